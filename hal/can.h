@@ -25,8 +25,8 @@
 #endif
 
 /*
- * Of an id: a remote frame, which asks for the frame of that identifier. It has no data; its length is that of what it
- * asks for. Whoever looks for an identifier by == never takes one for a frame with data.
+ * Flag in an id: a remote frame, which asks for the frame of that identifier. It has no data; its length is that of
+ * what it asks for. Whoever looks for an identifier by == never takes one for a frame with data.
  */
 #define CAN_REMOTE  0x8000U
 #define CAN_ID_MASK 0x07FFU

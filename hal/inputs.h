@@ -1,5 +1,5 @@
 /*
- * What a control cycle is told of the world: passed to controller_cycle, never asked for. So a run is repeated exactly
+ * What a control cycle is told of the world: passed to takt_controller_cycle, never asked for. So a run is repeated exactly
  * by giving it the same inputs.
  */
 #ifndef TAKT_HAL_INPUTS_H

@@ -8,13 +8,13 @@
 #define MEETING_RATIO 1e-9
 
 /* H = F / f   (2) */
-double cycle_step_mm(double feed_mm_s, double frequency_hz)
+double takt_cycle_step_mm(double feed_mm_s, double frequency_hz)
 {
     return feed_mm_s / frequency_hz;
 }
 
 /* (H/2)^2 / (R + sqrt(R^2 - (H/2)^2)): equation (1) without its cancellation */
-double cycle_chord_error_mm(double radius_mm, double step_mm)
+double takt_cycle_chord_error_mm(double radius_mm, double step_mm)
 {
     const double half = 0.5 * step_mm;
 
@@ -31,7 +31,7 @@ static double half_chord_mm(double radius_mm, double tolerance_mm)
 }
 
 /* f = F / (2 sqrt(2 R d - d^2))   (3). For R <= d no chord of at most half a turn is farther off than d. */
-double cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_mm)
+double takt_cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_mm)
 {
     if (radius_mm <= tolerance_mm) {
         return 0.0;
@@ -40,7 +40,7 @@ double cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_m
 }
 
 /* F = 2 f sqrt(2 R d - d^2)   (3) */
-double cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double tolerance_mm)
+double takt_cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double tolerance_mm)
 {
     if (radius_mm <= tolerance_mm) {
         return MATHS_INFINITY;
@@ -49,23 +49,23 @@ double cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double toler
 }
 
 /* F = sqrt(R a)   (6) */
-double cycle_feed_acceleration_mm_s(double radius_mm, double acceleration_mm_s2)
+double takt_cycle_feed_acceleration_mm_s(double radius_mm, double acceleration_mm_s2)
 {
     return maths_sqrt(radius_mm * acceleration_mm_s2);
 }
 
 /* F = cbrt(J R^2)   (8): jerk of constant feed on a circle */
-double cycle_feed_jerk_mm_s(double radius_mm, double jerk_mm_s3)
+double takt_cycle_feed_jerk_mm_s(double radius_mm, double jerk_mm_s3)
 {
     return jerk_mm_s3 == MATHS_INFINITY ? MATHS_INFINITY
-                                        : maths_cbrt(jerk_mm_s3 * radius_mm * radius_mm);
+                                        : takt_maths_cbrt(jerk_mm_s3 * radius_mm * radius_mm);
 }
 
-double cycle_feed_allowed_mm_s(const struct cycle_limits *limits, double radius_mm,
-                               unsigned *governing)
+double takt_cycle_feed_allowed_mm_s(const struct cycle_limits *limits, double radius_mm,
+                                    unsigned *governing)
 {
-    const double a = cycle_feed_acceleration_mm_s(radius_mm, limits->acceleration_mm_s2);
-    const double j = cycle_feed_jerk_mm_s(radius_mm, limits->jerk_mm_s3);
+    const double a = takt_cycle_feed_acceleration_mm_s(radius_mm, limits->acceleration_mm_s2);
+    const double j = takt_cycle_feed_jerk_mm_s(radius_mm, limits->jerk_mm_s3);
     const double feed = maths_min(limits->feed_mm_s, maths_min(a, j));
     const double near = feed * (1.0 + MEETING_RATIO);
 
@@ -86,7 +86,7 @@ static void consider(const struct cycle_limits *limits, double tolerance_mm, dou
     if (!(radius_mm >= tolerance_mm) || !maths_is_finite(radius_mm)) {
         return;
     }
-    const double feed = cycle_feed_allowed_mm_s(limits, radius_mm, &governing);
+    const double feed = takt_cycle_feed_allowed_mm_s(limits, radius_mm, &governing);
     const double frequency = 0.5 * feed / half_chord_mm(radius_mm, tolerance_mm);
 
     if (frequency > need->frequency_hz) {
@@ -103,8 +103,8 @@ static void consider(const struct cycle_limits *limits, double tolerance_mm, dou
  *     acceleration and feed  R = F^2 / a
  * Below R = d the formula has a pole at d / 2 that means nothing.
  */
-void cycle_frequency_find(const struct cycle_limits *limits, double tolerance_mm,
-                          struct cycle_need *need)
+void takt_cycle_frequency_find(const struct cycle_limits *limits, double tolerance_mm,
+                               struct cycle_need *need)
 {
     const double f = limits->feed_mm_s;
     const double a = limits->acceleration_mm_s2;

@@ -28,27 +28,27 @@ struct cycle_need {
 };
 
 /* Step of one cycle. */
-double cycle_step_mm(double feed_mm_s, double frequency_hz);
+double takt_cycle_step_mm(double feed_mm_s, double frequency_hz);
 
 /* Largest distance of a chord of that length from its circle; a chord cannot be longer than the diameter. */
-double cycle_chord_error_mm(double radius_mm, double step_mm);
+double takt_cycle_chord_error_mm(double radius_mm, double step_mm);
 
 /* Frequency at which the chord error is the tolerance; 0 for circles no larger than the tolerance. */
-double cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_mm);
+double takt_cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_mm);
 
 /* The same turned round: highest feed at a frequency. MATHS_INFINITY for circles no larger than the tolerance. */
-double cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double tolerance_mm);
+double takt_cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double tolerance_mm);
 
 /* Feed at which a circle uses up one limit. */
-double cycle_feed_acceleration_mm_s(double radius_mm, double acceleration_mm_s2);
-double cycle_feed_jerk_mm_s(double radius_mm, double jerk_mm_s3);
+double takt_cycle_feed_acceleration_mm_s(double radius_mm, double acceleration_mm_s2);
+double takt_cycle_feed_jerk_mm_s(double radius_mm, double jerk_mm_s3);
 
 /* Highest feed that all limits allow on a circle, and which of them govern (may be NULL). */
-double cycle_feed_allowed_mm_s(const struct cycle_limits *limits, double radius_mm,
-                               unsigned *governing);
+double takt_cycle_feed_allowed_mm_s(const struct cycle_limits *limits, double radius_mm,
+                                    unsigned *governing);
 
 /* The highest frequency that any circle larger than the tolerance needs, driven as fast as the limits allow. */
-void cycle_frequency_find(const struct cycle_limits *limits, double tolerance_mm,
-                          struct cycle_need *need);
+void takt_cycle_frequency_find(const struct cycle_limits *limits, double tolerance_mm,
+                               struct cycle_need *need);
 
 #endif

@@ -3,7 +3,7 @@
 #define CRC32_REFLECTED UINT32_C(0xedb88320)
 
 /* Bit by bit: tables are checked when they are loaded, not in the control cycle. */
-uint32_t crc32_add(uint32_t crc, const void *bytes, size_t size)
+uint32_t takt_crc32_add(uint32_t crc, const void *bytes, size_t size)
 {
     const uint8_t *byte = bytes;
 

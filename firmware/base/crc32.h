@@ -10,6 +10,6 @@
 #define CRC32_START 0U
 
 /* Goes on from the CRC of what came before. */
-uint32_t crc32_add(uint32_t crc, const void *bytes, size_t size);
+uint32_t takt_crc32_add(uint32_t crc, const void *bytes, size_t size);
 
 #endif

@@ -184,7 +184,7 @@ static double scientific_to_double(const struct scientific *number)
     return (double)number->mantissa * EXACT_POWER[number->exponent];
 }
 
-size_t decimal_read(const char *text, size_t length, double *value)
+size_t takt_decimal_read(const char *text, size_t length, double *value)
 {
     struct scientific number = {0, 0};
     size_t taken = scan_number(text, length, &number);
@@ -309,7 +309,7 @@ static size_t write_with_exponent(char *text, double value, unsigned places)
     return length + write_fixed(text + length, exponent, 0);
 }
 
-size_t decimal_write(char *text, double value, unsigned places)
+size_t takt_decimal_write(char *text, double value, unsigned places)
 {
     assert(places <= SMALL_POWER_MAX);
     if (value < FIXED_LIMIT && value > -FIXED_LIMIT)

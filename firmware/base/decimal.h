@@ -14,9 +14,9 @@
  * Above the doubles *value is infinity, below the normal ones (2.2e-308) it is 0. Signs and exponents are the
  * caller's.
  */
-size_t decimal_read(const char *text, size_t length, double *value);
+size_t takt_decimal_read(const char *text, size_t length, double *value);
 
-/* Room that decimal_write needs at most. */
+/* Room that takt_decimal_write needs at most. */
 #define DECIMAL_TEXT_MAX 40
 
 /*
@@ -26,6 +26,6 @@ size_t decimal_read(const char *text, size_t length, double *value);
  * places, good to 14 digits. Returns the number of characters; no terminating zero.
  * text must have room for DECIMAL_TEXT_MAX characters.
  */
-size_t decimal_write(char *text, double value, unsigned places);
+size_t takt_decimal_write(char *text, double value, unsigned places);
 
 #endif

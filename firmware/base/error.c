@@ -30,7 +30,7 @@ static void text_add_string(struct text *t, const char *s)
 static void text_add_value(struct text *t, double value)
 {
     char digits[DECIMAL_TEXT_MAX];
-    size_t length = decimal_write(digits, value, VALUE_PLACES);
+    size_t length = takt_decimal_write(digits, value, VALUE_PLACES);
     size_t point = 0;
     while (point < length && digits[point] != '.')
         point++;
@@ -74,8 +74,8 @@ static size_t length_that_fits(const char *word, size_t length)
     return length;
 }
 
-void diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, uint32_t column,
-                    const char *word, size_t word_length, double value)
+void takt_diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, uint32_t column,
+                         const char *word, size_t word_length, double value)
 {
     size_t length = length_that_fits(word, word_length);
     d->code = code;
@@ -92,7 +92,7 @@ void diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, u
     d->word[length] = '\0';
 }
 
-void diagnostic_set_limit(struct diagnostic *d, double limit)
+void takt_diagnostic_set_limit(struct diagnostic *d, double limit)
 {
     d->limit = limit;
 }
@@ -148,8 +148,8 @@ static void text_add_stored(struct text *t, uint8_t byte, const struct diagnosti
     later[count++] = byte;
     while (count > 0) {
         byte = later[--count];
-        for (; byte >= ERROR_TEXT_PLAIN; byte = error_text_pairs[byte - ERROR_TEXT_PLAIN][0])
-            later[count++] = error_text_pairs[byte - ERROR_TEXT_PLAIN][1];
+        for (; byte >= ERROR_TEXT_PLAIN; byte = takt_error_text_pairs[byte - ERROR_TEXT_PLAIN][0])
+            later[count++] = takt_error_text_pairs[byte - ERROR_TEXT_PLAIN][1];
         text_add_character(t, (char)byte, d);
     }
 }
@@ -162,14 +162,14 @@ static void text_add_template(struct text *t, const uint8_t *stored, const struc
         text_add(t, "%", 1);
 }
 
-size_t diagnostic_text(const struct diagnostic *d, char *text)
+size_t takt_diagnostic_text(const struct diagnostic *d, char *text)
 {
     struct text t = {text, 0, false};
     int index = -1 - (int)d->code;
     if (d->code == TAKT_OK) {
         text_add_string(&t, "no error");
     } else if (index >= 0 && index < (int)TAKT_ERROR_TOTAL) {
-        text_add_template(&t, error_text_find((unsigned)index), d);
+        text_add_template(&t, takt_error_text_find((unsigned)index), d);
     } else {
         text_add_string(&t, "error ");
         text_add_value(&t, (double)(int)d->code);

@@ -320,16 +320,16 @@ struct diagnostic {
  * Fills d; word may be any length and need not end in zero. It is cut to DIAGNOSTIC_WORD_MAX bytes, never within
  * a UTF-8 character, and control characters become '?'.
  */
-void diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, uint32_t column,
-                    const char *word, size_t word_length, double value);
+void takt_diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, uint32_t column,
+                         const char *word, size_t word_length, double value);
 
 /* The same for an error whose text has a limit. */
-void diagnostic_set_limit(struct diagnostic *d, double limit);
+void takt_diagnostic_set_limit(struct diagnostic *d, double limit);
 
 /*
  * The text of d without file, line and column ("the arc's end is 0.031 mm off its circle"), zero-terminated,
  * in text[DIAGNOSTIC_TEXT_MAX]. Returns its length. A code outside the list reads "error CODE".
  */
-size_t diagnostic_text(const struct diagnostic *d, char *text);
+size_t takt_diagnostic_text(const struct diagnostic *d, char *text);
 
 #endif

@@ -14,9 +14,9 @@
 /* Pairs within pairs at most. */
 #define ERROR_TEXT_DEPTH 16
 
-extern const uint8_t error_text_pairs[][2];
+extern const uint8_t takt_error_text_pairs[][2];
 
 /* The text of error -1 - index. index: below TAKT_ERROR_TOTAL. */
-const uint8_t *error_text_find(unsigned index);
+const uint8_t *takt_error_text_find(unsigned index);
 
 #endif

@@ -9,6 +9,6 @@
 #define FNV_START UINT64_C(0xcbf29ce484222325)
 
 /* Adds the eight bytes of value, least significant first, whatever the byte order of the machine. */
-uint64_t fnv_add_double(uint64_t digest, double value);
+uint64_t takt_fnv_add_double(uint64_t digest, double value);
 
 #endif

@@ -12,7 +12,7 @@ union bits_of_float {
 };
 
 /* Floats that are not negative are in the order of their bits. */
-float maths_float_below(double x)
+float takt_maths_float_below(double x)
 {
     union bits_of_float near = {.value = (float)x};
 
@@ -30,7 +30,7 @@ static bool may_have_fraction(double x)
     return maths_abs(x) < 0x1p52;
 }
 
-double maths_floor(double x)
+double takt_maths_floor(double x)
 {
     if (!may_have_fraction(x))
         return x;
@@ -38,7 +38,7 @@ double maths_floor(double x)
     return whole > x ? whole - 1.0 : whole;
 }
 
-double maths_ceil(double x)
+double takt_maths_ceil(double x)
 {
     if (!may_have_fraction(x))
         return x;
@@ -46,7 +46,7 @@ double maths_ceil(double x)
     return whole < x ? whole + 1.0 : whole;
 }
 
-double maths_round(double x)
+double takt_maths_round(double x)
 {
     if (!may_have_fraction(x))
         return x;
@@ -156,7 +156,7 @@ static double sine_in_quadrant(const struct reduced_angle *a, unsigned quadrant)
     return (quadrant & 2U) ? -value : value;
 }
 
-void maths_sincos(double x, double *sine, double *cosine)
+void takt_maths_sincos(double x, double *sine, double *cosine)
 {
     struct reduced_angle a = reduce_any_angle(x);
     double s = sine_near_zero(a.rest_rad, a.tail_rad);
@@ -167,22 +167,22 @@ void maths_sincos(double x, double *sine, double *cosine)
     *cosine = ((a.quadrant + 1U) & 2U) ? -along : along;
 }
 
-double maths_sin(double x)
+double takt_maths_sin(double x)
 {
     struct reduced_angle a = reduce_any_angle(x);
     return sine_in_quadrant(&a, a.quadrant);
 }
 
-double maths_cos(double x)
+double takt_maths_cos(double x)
 {
     struct reduced_angle a = reduce_any_angle(x);
     return sine_in_quadrant(&a, a.quadrant + 1U);
 }
 
-double maths_tan(double x)
+double takt_maths_tan(double x)
 {
     double sine, cosine;
-    maths_sincos(x, &sine, &cosine);
+    takt_maths_sincos(x, &sine, &cosine);
     return sine / cosine;
 }
 
@@ -255,7 +255,7 @@ static double safe_scale(double longest)
     return longest < 0x1p-500 ? 0x1p500 : 1.0;
 }
 
-double maths_atan2(double y, double x)
+double takt_maths_atan2(double y, double x)
 {
     double width = maths_abs(x);
     double height = maths_abs(y);
@@ -305,7 +305,7 @@ static double cbrt_1_to_8(double m, double y)
 /* Makes the exponent of any double, -1074 to 1023, positive; a multiple of 3. */
 #define CBRT_EXPONENT_SHIFT 1077
 
-double maths_cbrt(double x)
+double takt_maths_cbrt(double x)
 {
     static const double CBRT_OF_INVERSE_POWER[3] = {1.0, 0.7937005259840998, 0.6299605249474366};
     double size = maths_abs(x);

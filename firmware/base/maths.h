@@ -49,36 +49,36 @@ static inline bool maths_is_finite(double x)
 }
 
 /* The largest number of single precision <= x, x >= 0. */
-float maths_float_below(double x);
+float takt_maths_float_below(double x);
 
 /* Largest integer <= x and smallest integer >= x, as doubles; any |x|. Exact. */
-double maths_floor(double x);
-double maths_ceil(double x);
+double takt_maths_floor(double x);
+double takt_maths_ceil(double x);
 /* Nearest integer, halves away from zero (what part programs call ROUND). Exact. */
-double maths_round(double x);
+double takt_maths_round(double x);
 
 /*
  * Sine and cosine of the same angle, |x| <= 1e5 rad within 1 ulp. A larger finite angle counts as one at most an
  * ulp of the angle away; an infinite one gives NaN. Tangent: within 2.5 ulp.
  */
-void maths_sincos(double x, double *sine, double *cosine);
-double maths_sin(double x);
-double maths_cos(double x);
-double maths_tan(double x);
+void takt_maths_sincos(double x, double *sine, double *cosine);
+double takt_maths_sin(double x);
+double takt_maths_cos(double x);
+double takt_maths_tan(double x);
 
 /* Angle of the vector (x, y) in (-pi, pi], within 1 ulp; (0, 0) gives 0, an infinite component NaN. */
-double maths_atan2(double y, double x);
+double takt_maths_atan2(double y, double x);
 /* -1 <= x <= 1, else NaN. Within 2 ulp. */
-double maths_asin(double x);
-double maths_acos(double x);
+double takt_maths_asin(double x);
+double takt_maths_acos(double x);
 
 /* Cube root, any sign, within 1 ulp. */
-double maths_cbrt(double x);
+double takt_maths_cbrt(double x);
 
 /* e^x, natural logarithm (x <= 0: NaN), and x^y for part-program expressions; within 2 ulp (power: 4).
  * power: x < 0 needs an integer y, else NaN; 0^0 = 1. Overflow gives infinity. */
-double maths_exp(double x);
-double maths_ln(double x);
-double maths_power(double x, double y);
+double takt_maths_exp(double x);
+double takt_maths_ln(double x);
+double takt_maths_power(double x, double y);
 
 #endif

@@ -67,7 +67,7 @@ static double exp_of_pair(struct pair x)
 {
     if (maths_abs(x.hi) > EXP_ARGUMENT_MAX)
         x = (struct pair){x.hi < 0.0 ? -EXP_ARGUMENT_MAX : EXP_ARGUMENT_MAX, 0.0};
-    double k = maths_round(x.hi * ONE_OVER_LN_2);
+    double k = takt_maths_round(x.hi * ONE_OVER_LN_2);
     struct pair r = sum_any_order(x.hi - k * LN_2_PART_1, x.lo - k * LN_2_PART_2);
     struct pair one_plus_r = pair_sum_ordered(1.0, r.hi);
     double rest = one_plus_r.lo + (r.lo + r.hi * r.hi * exp_series(r.hi));
@@ -118,14 +118,14 @@ static struct pair ln_pair(double x)
     return pair_add(whole, ln_near_one(m));
 }
 
-double maths_exp(double x)
+double takt_maths_exp(double x)
 {
     if (x != x)
         return x;
     return exp_of_pair((struct pair){x, 0.0});
 }
 
-double maths_ln(double x)
+double takt_maths_ln(double x)
 {
     if (!(x > 0.0))
         return bits_nan();
@@ -146,7 +146,7 @@ static double power_of_size(double size, double y)
     return exp_of_pair(pair_multiply(ln_pair(size), (struct pair){y, 0.0}));
 }
 
-double maths_power(double x, double y)
+double takt_maths_power(double x, double y)
 {
     if (x != x || y != y)
         return bits_nan();
@@ -154,9 +154,9 @@ double maths_power(double x, double y)
         return 1.0;
     if (x >= 0.0)
         return power_of_size(x, y);
-    if (maths_floor(y) != y)
+    if (takt_maths_floor(y) != y)
         return bits_nan();
-    bool odd = maths_floor(0.5 * y) != 0.5 * y;
+    bool odd = takt_maths_floor(0.5 * y) != 0.5 * y;
     double size = power_of_size(-x, y);
     return odd ? -size : size;
 }
@@ -169,17 +169,17 @@ static double sine_from_cosine(double x)
 }
 
 /* asin x = angle of the vector (sqrt(1 - x^2), x). */
-double maths_asin(double x)
+double takt_maths_asin(double x)
 {
     if (!(maths_abs(x) <= 1.0))
         return bits_nan();
-    return maths_atan2(x, sine_from_cosine(x));
+    return takt_maths_atan2(x, sine_from_cosine(x));
 }
 
 /* acos x = angle of the vector (x, sqrt(1 - x^2)). */
-double maths_acos(double x)
+double takt_maths_acos(double x)
 {
     if (!(maths_abs(x) <= 1.0))
         return bits_nan();
-    return maths_atan2(sine_from_cosine(x), x);
+    return takt_maths_atan2(sine_from_cosine(x), x);
 }

@@ -2,7 +2,7 @@
 
 /*
  * CiA 402-2, table "State coding": the statusword under the mask has the value. In the order of
- * cia402_state.
+ * takt_cia402_state.
  */
 static const struct {
     uint8_t mask;
@@ -14,7 +14,7 @@ static const struct {
     [CIA402_FAULT_REACTION] = {0x4F, 0x0F}, [CIA402_FAULT] = {0x4F, 0x08},
 };
 
-enum cia402_state cia402_state(uint16_t statusword)
+enum cia402_state takt_cia402_state(uint16_t statusword)
 {
     for (unsigned i = CIA402_FAULT; i > CIA402_NOT_READY; i--)
         if ((statusword & state_coding[i].mask) == state_coding[i].value)
@@ -22,7 +22,7 @@ enum cia402_state cia402_state(uint16_t statusword)
     return CIA402_NOT_READY;
 }
 
-const char *cia402_state_text(enum cia402_state state)
+const char *takt_cia402_state_text(enum cia402_state state)
 {
     static const char *const names[] = {
         [CIA402_NOT_READY] = "not ready to switch on",
@@ -37,7 +37,7 @@ const char *cia402_state_text(enum cia402_state state)
     return names[state];
 }
 
-uint16_t cia402_statusword(enum cia402_state state)
+uint16_t takt_cia402_statusword(enum cia402_state state)
 {
     return state_coding[state].value;
 }
@@ -77,8 +77,8 @@ static enum cia402_state after_powered(enum cia402_state state, enum command com
     return CIA402_ENABLED;
 }
 
-enum cia402_state cia402_next_state(enum cia402_state state, uint16_t controlword,
-                                    uint16_t previous)
+enum cia402_state takt_cia402_next_state(enum cia402_state state, uint16_t controlword,
+                                         uint16_t previous)
 {
     enum command command = command_of(controlword);
     switch (state) {
@@ -99,7 +99,7 @@ enum cia402_state cia402_next_state(enum cia402_state state, uint16_t controlwor
     return state;
 }
 
-uint16_t cia402_step_to_enabled(enum cia402_state state)
+uint16_t takt_cia402_step_to_enabled(enum cia402_state state)
 {
     switch (state) {
     case CIA402_SWITCH_ON_DISABLED:

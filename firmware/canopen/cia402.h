@@ -1,7 +1,7 @@
 /*
  * Drive profile CiA 402-2: objects, and the state machine of a drive as both ends see it. The drive
- * moves from state to state (cia402_next_state) and shows where it is (cia402_statusword); the
- * controller reads that (cia402_state) and says what it wants next (cia402_step_to_enabled).
+ * moves from state to state (takt_cia402_next_state) and shows where it is (takt_cia402_statusword); the
+ * controller reads that (takt_cia402_state) and says what it wants next (takt_cia402_step_to_enabled).
  *
  *     NOT_READY -> SWITCH_ON_DISABLED -shutdown-> READY -switch on-> SWITCHED_ON -enable-> ENABLED
  *                        ^    ^                                                              |
@@ -118,31 +118,31 @@ enum cia402_state {
 #define CIA402_HOMING_ERROR     0x2000 /* homing mode only */
 
 /* State that a statusword shows. A pattern CiA 402 does not define reads as CIA402_NOT_READY. */
-enum cia402_state cia402_state(uint16_t statusword);
+enum cia402_state takt_cia402_state(uint16_t statusword);
 
-/* cia402_state(statusword) == CIA402_ENABLED, for every drive in every cycle. */
+/* takt_cia402_state(statusword) == CIA402_ENABLED, for every drive in every cycle. */
 static inline bool cia402_is_enabled(uint16_t statusword)
 {
     return (statusword & 0x6F) == 0x27;
 }
 
 /* The state's name, "switched on". */
-const char *cia402_state_text(enum cia402_state state);
+const char *takt_cia402_state_text(enum cia402_state state);
 
 /* The statusword's state bits (mask 0x6F). */
-uint16_t cia402_statusword(enum cia402_state state);
+uint16_t takt_cia402_statusword(enum cia402_state state);
 
 /*
  * State of a drive after a controlword; previous: the controlword before, for the rising edge of
  * fault reset.
  */
-enum cia402_state cia402_next_state(enum cia402_state state, uint16_t controlword,
-                                    uint16_t previous);
+enum cia402_state takt_cia402_next_state(enum cia402_state state, uint16_t controlword,
+                                         uint16_t previous);
 
 /*
  * Controlword that brings a drive one step nearer to CIA402_ENABLED. From FAULT it is fault reset:
  * a step of its own, since the bit must have been clear before.
  */
-uint16_t cia402_step_to_enabled(enum cia402_state state);
+uint16_t takt_cia402_step_to_enabled(enum cia402_state state);
 
 #endif

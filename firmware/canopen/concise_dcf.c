@@ -14,7 +14,8 @@ static struct concise_dcf_entry entry_at(const uint8_t *at)
     };
 }
 
-bool concise_dcf_next(const struct concise_dcf *dcf, uint32_t *at, struct concise_dcf_entry *entry)
+bool takt_concise_dcf_next(const struct concise_dcf *dcf, uint32_t *at,
+                           struct concise_dcf_entry *entry)
 {
     if (dcf->length - *at < HEAD)
         return false;
@@ -23,7 +24,7 @@ bool concise_dcf_next(const struct concise_dcf *dcf, uint32_t *at, struct concis
     return true;
 }
 
-bool concise_dcf_is_well(const struct concise_dcf *dcf, uint32_t *object)
+bool takt_concise_dcf_is_well(const struct concise_dcf *dcf, uint32_t *object)
 {
     uint32_t at = CONCISE_DCF_FIRST, count = 0;
     *object = 0;
@@ -42,10 +43,10 @@ bool concise_dcf_is_well(const struct concise_dcf *dcf, uint32_t *object)
     return at == dcf->length && count == little_endian_read32(dcf->bytes);
 }
 
-bool concise_dcf_has(const struct concise_dcf *dcf, uint32_t at, uint32_t object)
+bool takt_concise_dcf_has(const struct concise_dcf *dcf, uint32_t at, uint32_t object)
 {
     struct concise_dcf_entry entry;
-    while (concise_dcf_next(dcf, &at, &entry))
+    while (takt_concise_dcf_next(dcf, &at, &entry))
         if (entry.object == object)
             return true;
     return false;

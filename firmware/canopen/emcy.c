@@ -6,7 +6,7 @@
 
 #define EMCY_LENGTH 8
 
-void emcy_write(struct can_frame *frame, const struct emcy *emcy)
+void takt_emcy_write(struct can_frame *frame, const struct emcy *emcy)
 {
     frame->id = (uint16_t)(EMCY_FUNCTION + emcy->node);
     frame->length = EMCY_LENGTH;
@@ -15,7 +15,7 @@ void emcy_write(struct can_frame *frame, const struct emcy *emcy)
     memcpy(frame->data + 3, emcy->vendor, sizeof emcy->vendor);
 }
 
-bool emcy_read(const struct can_frame *frame, struct emcy *emcy)
+bool takt_emcy_read(const struct can_frame *frame, struct emcy *emcy)
 {
     emcy->node = node_id(frame->id);
     if (node_function(frame->id) != EMCY_FUNCTION || emcy->node == 0 ||
@@ -72,7 +72,7 @@ static const struct {
     {0xF000, 0xF000, "additional functions"},
 };
 
-const char *emcy_text(uint16_t code)
+const char *takt_emcy_text(uint16_t code)
 {
     for (unsigned i = 0; i < sizeof meanings / sizeof meanings[0]; i++)
         if ((code & meanings[i].mask) == meanings[i].code)

@@ -34,14 +34,14 @@ struct emcy {
     uint8_t vendor[5];      /* the manufacturer's own; 0 unless documented by the drive */
 };
 
-void emcy_write(struct can_frame *frame, const struct emcy *emcy);
+void takt_emcy_write(struct can_frame *frame, const struct emcy *emcy);
 /* False: the frame is no emergency message. */
-bool emcy_read(const struct can_frame *frame, struct emcy *emcy);
+bool takt_emcy_read(const struct can_frame *frame, struct emcy *emcy);
 
 /*
  * Meaning of an error code in a few words: the code itself where it is known, else the class it
  * belongs to.
  */
-const char *emcy_text(uint16_t code);
+const char *takt_emcy_text(uint16_t code);
 
 #endif

@@ -1,7 +1,7 @@
 #include "canopen/nmt.h"
 #include "canopen/node.h"
 
-void nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_t node)
+void takt_nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_t node)
 {
     frame->id = NMT_COMMAND_COB_ID;
     frame->length = 2;
@@ -32,7 +32,7 @@ static bool command_from_byte(uint8_t byte, enum nmt_command *command)
     }
 }
 
-bool nmt_read_command(const struct can_frame *frame, enum nmt_command *command, uint8_t *node)
+bool takt_nmt_read_command(const struct can_frame *frame, enum nmt_command *command, uint8_t *node)
 {
     if (frame->id != NMT_COMMAND_COB_ID || frame->length != 2 || frame->data[1] > NODE_MAX)
         return false;
@@ -40,27 +40,27 @@ bool nmt_read_command(const struct can_frame *frame, enum nmt_command *command, 
     return command_from_byte(frame->data[0], command);
 }
 
-void nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state)
+void takt_nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state)
 {
     frame->id = (uint16_t)(NMT_HEARTBEAT_FUNCTION + node);
     frame->length = 1;
     frame->data[0] = (uint8_t)state;
 }
 
-bool nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state)
+bool takt_nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state)
 {
     *node = node_id(frame->id);
     return node_function(frame->id) == NMT_HEARTBEAT_FUNCTION && *node != 0 &&
            nmt_read_state(frame, state);
 }
 
-void nmt_write_guard(struct can_frame *frame, uint8_t node)
+void takt_nmt_write_guard(struct can_frame *frame, uint8_t node)
 {
     *frame = (struct can_frame){.id = (uint16_t)((CAN_REMOTE | NMT_HEARTBEAT_FUNCTION) + node),
                                 .length = 1};
 }
 
-enum nmt_state nmt_next_state(enum nmt_command command)
+enum nmt_state takt_nmt_next_state(enum nmt_command command)
 {
     switch (command) {
     case NMT_START:

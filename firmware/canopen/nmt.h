@@ -33,19 +33,19 @@ enum nmt_state {
 };
 
 /* node: 1 ... 127, or NMT_ALL_NODES. */
-void nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_t node);
+void takt_nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_t node);
 /*
  * False: the frame is no NMT command (wrong identifier or length, or a command CiA 301 does not
  * know).
  */
-bool nmt_read_command(const struct can_frame *frame, enum nmt_command *command, uint8_t *node);
+bool takt_nmt_read_command(const struct can_frame *frame, enum nmt_command *command, uint8_t *node);
 
-void nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state);
+void takt_nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state);
 /* False: the frame is no heartbeat. */
-bool nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state);
+bool takt_nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state);
 /* An answer to a guarding master is the same frame with this bit, which changes from each answer to the next (7.2.8.3.2.1). */
 #define NMT_TOGGLE 0x80u
-/* Of a frame that has the identifier of a heartbeat. False: its length or its state is none that CiA 301 knows. */
+/* Reads a frame that has the identifier of a heartbeat. False: its length or its state is none that CiA 301 knows. */
 static inline bool nmt_read_state(const struct can_frame *frame, enum nmt_state *state)
 {
     if (frame->length != 1)
@@ -56,7 +56,7 @@ static inline bool nmt_read_state(const struct can_frame *frame, enum nmt_state 
 }
 
 /* Node guarding: the remote frame by which a master asks a node for its state, of whatever length. */
-void nmt_write_guard(struct can_frame *frame, uint8_t node);
+void takt_nmt_write_guard(struct can_frame *frame, uint8_t node);
 static inline bool nmt_is_guard(const struct can_frame *frame, uint8_t node)
 {
     return frame->id == (CAN_REMOTE | NMT_HEARTBEAT_FUNCTION) + node;
@@ -65,6 +65,6 @@ static inline bool nmt_is_guard(const struct can_frame *frame, uint8_t node)
 /*
  * State of a node after a command. Both resets lead to NMT_BOOTED, which the node leaves by itself.
  */
-enum nmt_state nmt_next_state(enum nmt_command command);
+enum nmt_state takt_nmt_next_state(enum nmt_command command);
 
 #endif

@@ -18,7 +18,7 @@
 #define NODE_FUNCTION_MASK 0x780u
 #define NODE_ID_MASK       0x07Fu
 
-/* Of a remote frame no function: it asks for one. */
+/* A remote frame has no function: it asks for one. */
 static inline uint16_t node_function(uint16_t cob_id)
 {
     return (uint16_t)(cob_id & (CAN_REMOTE | NODE_FUNCTION_MASK));

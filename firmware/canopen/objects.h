@@ -41,7 +41,7 @@
 #define OBJECT_DEVICE_PROFILE_401  0x00000191u
 #define OBJECT_DEVICE_PROFILE_402  0x00000192u
 
-/* Of the profile of I/O nodes, CiA 401: eight inputs or outputs a sub-index, from 1 on. */
+/* Objects of I/O nodes (profile CiA 401): eight inputs or outputs a sub-index, from 1 on. */
 #define OBJECT_IO_INPUTS           0x6000
 #define OBJECT_IO_OUTPUTS          0x6200
 #define OBJECT_IO_ANALOGUE_OUTPUTS 0x6411 /* 16 bits each */

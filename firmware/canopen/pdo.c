@@ -12,7 +12,7 @@ static bool is_mappable(uint32_t object)
     return bits == 8 || bits == 16 || bits == 32;
 }
 
-bool pdo_map(struct pdo_mapping *mapping, const uint32_t *objects, unsigned count)
+bool takt_pdo_map(struct pdo_mapping *mapping, const uint32_t *objects, unsigned count)
 {
     unsigned length = 0;
     mapping->count = 0;
@@ -57,7 +57,7 @@ static uint32_t read_value(const uint8_t *bytes, unsigned count)
     }
 }
 
-void pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_frame *frame)
+void takt_pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_frame *frame)
 {
     const struct pdo_mapping *mapping = &pdo->mapping;
     uint8_t *bytes = frame->data;
@@ -70,7 +70,7 @@ void pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_frame *f
     }
 }
 
-void pdo_unpack(const struct pdo_mapping *mapping, const uint8_t *data, uint32_t value[])
+void takt_pdo_unpack(const struct pdo_mapping *mapping, const uint8_t *data, uint32_t value[])
 {
     for (unsigned i = 0; i < mapping->count; i++) {
         unsigned count = object_bytes(mapping->object[i]);
@@ -79,7 +79,7 @@ void pdo_unpack(const struct pdo_mapping *mapping, const uint8_t *data, uint32_t
     }
 }
 
-int pdo_offset(const struct pdo_mapping *mapping, uint32_t object)
+int takt_pdo_offset(const struct pdo_mapping *mapping, uint32_t object)
 {
     unsigned offset = 0;
     for (unsigned i = 0; i < mapping->count; i++) {

@@ -55,15 +55,15 @@ struct pdo {
  * False, and the mapping empty: more than CAN_DATA_MAX bytes or PDO_MAPPED_MAX objects, or an
  * object that is not of 8, 16 or 32 bits.
  */
-bool pdo_map(struct pdo_mapping *mapping, const uint32_t *objects, unsigned count);
+bool takt_pdo_map(struct pdo_mapping *mapping, const uint32_t *objects, unsigned count);
 
 /*
  * One value for every mapped object, dummies included, as raw bits: a signed object is the caller's
  * to cast from the width it has. pack: frame->id and length are set too. unpack: the caller has
  * checked pdo_fits.
  */
-void pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_frame *frame);
-void pdo_unpack(const struct pdo_mapping *mapping, const uint8_t *data, uint32_t value[]);
+void takt_pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_frame *frame);
+void takt_pdo_unpack(const struct pdo_mapping *mapping, const uint8_t *data, uint32_t value[]);
 
 /* A frame may be longer than its mapping, never shorter (CiA 301, 7.2.2.5: error 8210). */
 static inline bool pdo_fits(const struct pdo_mapping *mapping, const struct can_frame *frame)
@@ -72,6 +72,6 @@ static inline bool pdo_fits(const struct pdo_mapping *mapping, const struct can_
 }
 
 /* Byte at which a mapped object begins in the frame; -1: not mapped. */
-int pdo_offset(const struct pdo_mapping *mapping, uint32_t object);
+int takt_pdo_offset(const struct pdo_mapping *mapping, uint32_t object);
 
 #endif

@@ -1,13 +1,13 @@
 #include "canopen/sdo.h"
 #include "canopen/little_endian.h"
 
-uint32_t sdo_read_object(const struct can_frame *frame)
+uint32_t takt_sdo_read_object(const struct can_frame *frame)
 {
     return SDO_OBJECT(little_endian_read16(frame->data + 1), frame->data[3]);
 }
 
-void sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t command, uint32_t object,
-                        uint32_t value)
+void takt_sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t command,
+                             uint32_t object, uint32_t value)
 {
     frame->id = cob_id;
     frame->length = SDO_LENGTH;
@@ -17,15 +17,15 @@ void sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t comman
     little_endian_write32(frame->data + 4, value);
 }
 
-void sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,
-                     uint32_t code)
+void takt_sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,
+                          uint32_t code)
 {
-    sdo_write_initiate(frame, (uint16_t)(function + node), SDO_ABORT, object, code);
+    takt_sdo_write_initiate(frame, (uint16_t)(function + node), SDO_ABORT, object, code);
 }
 
-void sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object, uint16_t value)
+void takt_sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object, uint16_t value)
 {
     const uint8_t command =
         SDO_REQUEST_DOWNLOAD | (SDO_EXPEDITED_MAX - 2) << 2 | SDO_EXPEDITED | SDO_SIZE_GIVEN;
-    sdo_write_initiate(frame, (uint16_t)(SDO_REQUEST_FUNCTION + node), command, object, value);
+    takt_sdo_write_initiate(frame, (uint16_t)(SDO_REQUEST_FUNCTION + node), command, object, value);
 }

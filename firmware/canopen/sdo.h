@@ -95,7 +95,7 @@ static inline bool sdo_says_absent(uint32_t abort_code)
 }
 
 /* Meaning of an abort code in a few words; of one that CiA 301 does not know "unknown abort code". */
-const char *sdo_abort_text(uint32_t code);
+const char *takt_sdo_abort_text(uint32_t code);
 
 /* Bytes of the first frame, or of a segment, that hold nothing. */
 static inline unsigned sdo_unused_expedited(uint8_t command)
@@ -109,17 +109,17 @@ static inline unsigned sdo_unused_segment(uint8_t command)
 }
 
 /* The object of a first frame or an abort, as SDO_OBJECT makes it. */
-uint32_t sdo_read_object(const struct can_frame *frame);
+uint32_t takt_sdo_read_object(const struct can_frame *frame);
 
 /* A first frame, of either side. value: bytes 4 to 7. */
-void sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t command, uint32_t object,
-                        uint32_t value);
+void takt_sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t command,
+                             uint32_t object, uint32_t value);
 
 /* A request to write a number of two bytes. object: as it is mapped. */
-void sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object, uint16_t value);
+void takt_sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object, uint16_t value);
 
 /* function: SDO_REQUEST_FUNCTION or SDO_RESPONSE_FUNCTION, by who aborts. */
-void sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,
-                     uint32_t code);
+void takt_sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,
+                          uint32_t code);
 
 #endif

@@ -39,7 +39,7 @@ static const struct {
     {SDO_ABORT_NO_DATA, "no data available"},
 };
 
-const char *sdo_abort_text(uint32_t code)
+const char *takt_sdo_abort_text(uint32_t code)
 {
     for (unsigned i = 0; i < sizeof aborts / sizeof aborts[0]; i++)
         if (aborts[i].code == code)

@@ -39,7 +39,7 @@ static void send_plain(struct sdo_server *server, unsigned command, uint8_t firs
     struct can_frame frame = {.id = (uint16_t)(SDO_RESPONSE_FUNCTION + server->node),
                               .length = SDO_LENGTH,
                               .data = {(uint8_t)command, first, second}};
-    (void)sdo_server_send(server, &frame);
+    (void)takt_sdo_server_send(server, &frame);
 }
 
 static bool is_block_size(uint8_t segments)
@@ -55,23 +55,23 @@ static bool is_block_size(uint8_t segments)
  */
 static void offer(struct sdo_server *server, const struct can_frame *frame)
 {
-    server->object = sdo_read_object(frame);
+    server->object = takt_sdo_read_object(frame);
     server->state = SDO_SERVER_IDLE;
     server->block_size = frame->data[4];
     server->with_crc = frame->data[0] & BLOCK_WITH_CRC;
     if (!is_block_size(server->block_size)) {
-        sdo_server_abort(server, SDO_ABORT_BLOCK_SIZE);
+        takt_sdo_server_abort(server, SDO_ABORT_BLOCK_SIZE);
         return;
     }
-    if (!sdo_server_open(server))
+    if (!takt_sdo_server_open(server))
         return;
     if (server->length <= frame->data[5]) {
-        sdo_server_begin_upload(server);
+        takt_sdo_server_begin_upload(server);
         return;
     }
     server->state = SDO_SERVER_OFFERED;
-    sdo_server_answer(server, SDO_RESPONSE_BLOCK_UPLOAD | BLOCK_WITH_CRC | BLOCK_SIZE_GIVEN,
-                      (uint32_t)server->length);
+    takt_sdo_server_answer(server, SDO_RESPONSE_BLOCK_UPLOAD | BLOCK_WITH_CRC | BLOCK_SIZE_GIVEN,
+                           (uint32_t)server->length);
 }
 
 static bool send_segment(struct sdo_server *server, uint8_t sequence)
@@ -83,7 +83,7 @@ static bool send_segment(struct sdo_server *server, uint8_t sequence)
     size_t length = left < SDO_SEGMENT_MAX ? left : SDO_SEGMENT_MAX;
     frame.data[0] = (uint8_t)(sequence | (length == left ? BLOCK_LAST_SEGMENT : 0));
     memcpy(frame.data + 1, server->source + from, length);
-    return sdo_server_send(server, &frame);
+    return takt_sdo_server_send(server, &frame);
 }
 
 /* Segments of the block that begins at server->moved; at least one, for a value of length 0 too. */
@@ -94,7 +94,7 @@ static unsigned segments_of_block(const struct sdo_server *server)
     return segments < server->block_size ? (unsigned)segments : server->block_size;
 }
 
-void sdo_server_send_segments(struct sdo_server *server)
+void takt_sdo_server_send_segments(struct sdo_server *server)
 {
     unsigned segments = segments_of_block(server);
     while (server->sequence < segments) {
@@ -108,7 +108,7 @@ static void send_block(struct sdo_server *server)
 {
     server->state = SDO_SERVER_SENDING;
     server->sequence = 0;
-    sdo_server_send_segments(server);
+    takt_sdo_server_send_segments(server);
 }
 
 /* How many bytes of the last segment hold nothing, and the checksum. */
@@ -128,11 +128,11 @@ static void take_acknowledge(struct sdo_server *server, const struct can_frame *
 {
     uint8_t acknowledged = frame->data[1];
     if (acknowledged > server->sequence) {
-        sdo_server_abort(server, SDO_ABORT_SEQUENCE);
+        takt_sdo_server_abort(server, SDO_ABORT_SEQUENCE);
         return;
     }
     if (!is_block_size(frame->data[2])) {
-        sdo_server_abort(server, SDO_ABORT_BLOCK_SIZE);
+        takt_sdo_server_abort(server, SDO_ABORT_BLOCK_SIZE);
         return;
     }
     bool is_empty = server->length == 0 && acknowledged > 0;
@@ -144,7 +144,7 @@ static void take_acknowledge(struct sdo_server *server, const struct can_frame *
         send_block(server);
 }
 
-void sdo_server_take_block_upload(struct sdo_server *server, const struct can_frame *frame)
+void takt_sdo_server_take_block_upload(struct sdo_server *server, const struct can_frame *frame)
 {
     unsigned subcommand = frame->data[0] & BLOCK_SUBCOMMAND_MASK;
     if (subcommand == BLOCK_INITIATE)
@@ -156,7 +156,7 @@ void sdo_server_take_block_upload(struct sdo_server *server, const struct can_fr
     else if (subcommand == BLOCK_END && server->state == SDO_SERVER_ENDING)
         server->state = SDO_SERVER_IDLE;
     else
-        sdo_server_abort(server, SDO_ABORT_COMMAND);
+        takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
 }
 
 /* ---- Download ---- */
@@ -164,14 +164,14 @@ void sdo_server_take_block_upload(struct sdo_server *server, const struct can_fr
 static void accept(struct sdo_server *server, const struct can_frame *frame)
 {
     uint8_t command = frame->data[0];
-    server->object = sdo_read_object(frame);
+    server->object = takt_sdo_read_object(frame);
     server->state = SDO_SERVER_IDLE;
     uint32_t code = server->owner.may_write(server->owner.context, server->object);
     server->expected = command & BLOCK_SIZE_GIVEN ? little_endian_read32(frame->data + 4) : 0;
     if (code == SDO_ABORT_NONE && server->expected > SDO_SERVER_WRITE_MAX)
         code = SDO_ABORT_TOO_LONG;
     if (code != SDO_ABORT_NONE) {
-        sdo_server_abort(server, code);
+        takt_sdo_server_abort(server, code);
         return;
     }
     server->with_crc = command & BLOCK_WITH_CRC;
@@ -179,7 +179,8 @@ static void accept(struct sdo_server *server, const struct can_frame *frame)
     server->moved = 0;
     server->sequence = 0;
     server->has_last = false;
-    sdo_server_answer(server, SDO_RESPONSE_BLOCK_DOWNLOAD | BLOCK_WITH_CRC, SDO_BLOCK_SEGMENTS_MAX);
+    takt_sdo_server_answer(server, SDO_RESPONSE_BLOCK_DOWNLOAD | BLOCK_WITH_CRC,
+                           SDO_BLOCK_SEGMENTS_MAX);
 }
 
 static void acknowledge(struct sdo_server *server)
@@ -194,13 +195,13 @@ static void acknowledge(struct sdo_server *server)
  * Segments count from 1. One that does not continue the row is lost; the acknowledgement at the end
  * of the block tells the client from where to repeat.
  */
-void sdo_server_take_block_segment(struct sdo_server *server, const struct can_frame *frame)
+void takt_sdo_server_take_block_segment(struct sdo_server *server, const struct can_frame *frame)
 {
     bool is_last = frame->data[0] & BLOCK_LAST_SEGMENT;
     uint8_t sequence = frame->data[0] & (uint8_t)~BLOCK_LAST_SEGMENT;
     if (sequence == server->sequence + 1) {
         if (server->moved + SDO_SEGMENT_MAX > sizeof server->data) {
-            sdo_server_abort(server, SDO_ABORT_TOO_LONG);
+            takt_sdo_server_abort(server, SDO_ABORT_TOO_LONG);
             return;
         }
         memcpy(server->data + server->moved, frame->data + 1, SDO_SEGMENT_MAX);
@@ -219,31 +220,31 @@ static void end_download(struct sdo_server *server, const struct can_frame *fram
     size_t length = server->moved - unused;
     server->state = SDO_SERVER_IDLE;
     if (server->expected != 0 && length != server->expected) {
-        sdo_server_abort(server,
-                         length < server->expected ? SDO_ABORT_TOO_SHORT : SDO_ABORT_TOO_LONG);
+        takt_sdo_server_abort(server,
+                              length < server->expected ? SDO_ABORT_TOO_SHORT : SDO_ABORT_TOO_LONG);
         return;
     }
     if (server->with_crc &&
         little_endian_read16(frame->data + 1) != checksum(server->data, length)) {
-        sdo_server_abort(server, SDO_ABORT_CRC);
+        takt_sdo_server_abort(server, SDO_ABORT_CRC);
         return;
     }
-    if (sdo_server_deliver(server, server->data, length))
+    if (takt_sdo_server_deliver(server, server->data, length))
         send_plain(server, SDO_RESPONSE_BLOCK_DOWNLOAD | BLOCK_END, 0, 0);
 }
 
-void sdo_server_take_block_download(struct sdo_server *server, const struct can_frame *frame)
+void takt_sdo_server_take_block_download(struct sdo_server *server, const struct can_frame *frame)
 {
     if ((frame->data[0] & BLOCK_END) == 0)
         accept(server, frame);
     else if (server->state == SDO_SERVER_TAKEN)
         end_download(server, frame);
     else
-        sdo_server_abort(server, SDO_ABORT_COMMAND);
+        takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
 }
 
-void sdo_server_go_on(struct sdo_server *server)
+void takt_sdo_server_go_on(struct sdo_server *server)
 {
     if (server->state == SDO_SERVER_SENDING)
-        sdo_server_send_segments(server);
+        takt_sdo_server_send_segments(server);
 }

@@ -14,8 +14,8 @@ static void begin(struct sdo_client *client, uint8_t node, uint32_t object, uint
     client->send_pending = true;
 }
 
-void sdo_client_download(struct sdo_client *client, uint8_t node, uint32_t object,
-                         const uint8_t *value, unsigned length, uint32_t timeout_cycles)
+void takt_sdo_client_download(struct sdo_client *client, uint8_t node, uint32_t object,
+                              const uint8_t *value, unsigned length, uint32_t timeout_cycles)
 {
     assert(length >= 1 && length <= SDO_CLIENT_VALUE_MAX);
     begin(client, node, object, timeout_cycles);
@@ -24,23 +24,23 @@ void sdo_client_download(struct sdo_client *client, uint8_t node, uint32_t objec
     memcpy(client->value, value, length);
 }
 
-void sdo_client_upload(struct sdo_client *client, uint8_t node, uint32_t object,
-                       uint32_t timeout_cycles)
+void takt_sdo_client_upload(struct sdo_client *client, uint8_t node, uint32_t object,
+                            uint32_t timeout_cycles)
 {
     begin(client, node, object, timeout_cycles);
     client->is_upload = true;
 }
 
-void sdo_client_download_number(struct sdo_client *client, uint8_t node, uint32_t object,
-                                uint32_t value, unsigned length, uint32_t timeout_cycles)
+void takt_sdo_client_download_number(struct sdo_client *client, uint8_t node, uint32_t object,
+                                     uint32_t value, unsigned length, uint32_t timeout_cycles)
 {
     uint8_t bytes[SDO_EXPEDITED_MAX];
     assert(length <= sizeof bytes);
     little_endian_write32(bytes, value);
-    sdo_client_download(client, node, object, bytes, length, timeout_cycles);
+    takt_sdo_client_download(client, node, object, bytes, length, timeout_cycles);
 }
 
-uint32_t sdo_client_number(const struct sdo_client *client)
+uint32_t takt_sdo_client_number(const struct sdo_client *client)
 {
     uint8_t bytes[SDO_EXPEDITED_MAX] = {0};
     memcpy(bytes, client->value, client->length < sizeof bytes ? client->length : sizeof bytes);
@@ -64,9 +64,9 @@ static uint8_t download_command(const struct sdo_client *client)
 static void write_initiate(const struct sdo_client *client, uint16_t cob_id,
                            struct can_frame *frame)
 {
-    uint32_t value = client->is_segmented ? client->length : sdo_client_number(client);
+    uint32_t value = client->is_segmented ? client->length : takt_sdo_client_number(client);
     uint8_t command = client->is_upload ? SDO_REQUEST_UPLOAD : download_command(client);
-    sdo_write_initiate(frame, cob_id, command, client->object, client->is_upload ? 0 : value);
+    takt_sdo_write_initiate(frame, cob_id, command, client->object, client->is_upload ? 0 : value);
 }
 
 static void write_segment(const struct sdo_client *client, uint16_t cob_id, struct can_frame *frame)
@@ -86,12 +86,12 @@ static void write_segment(const struct sdo_client *client, uint16_t cob_id, stru
     memcpy(frame->data + 1, client->value + client->moved, length);
 }
 
-bool sdo_client_next(const struct sdo_client *client, struct can_frame *frame)
+bool takt_sdo_client_next(const struct sdo_client *client, struct can_frame *frame)
 {
     uint16_t cob_id = (uint16_t)(SDO_REQUEST_FUNCTION + client->node);
     if (client->abort_pending) {
-        sdo_write_abort(frame, SDO_REQUEST_FUNCTION, client->node, client->object,
-                        client->abort_code);
+        takt_sdo_write_abort(frame, SDO_REQUEST_FUNCTION, client->node, client->object,
+                             client->abort_code);
         return true;
     }
     if (!client->send_pending)
@@ -103,7 +103,7 @@ bool sdo_client_next(const struct sdo_client *client, struct can_frame *frame)
     return true;
 }
 
-void sdo_client_sent(struct sdo_client *client)
+void takt_sdo_client_sent(struct sdo_client *client)
 {
     client->send_pending = false;
     client->abort_pending = false;
@@ -197,14 +197,14 @@ static void take_segment(struct sdo_client *client, const struct can_frame *fram
         progress(client);
 }
 
-void sdo_client_take(struct sdo_client *client, const struct can_frame *frame)
+void takt_sdo_client_take(struct sdo_client *client, const struct can_frame *frame)
 {
     bool is_abort = frame->data[0] == SDO_ABORT;
     if (frame->id != SDO_RESPONSE_FUNCTION + client->node || frame->length != SDO_LENGTH)
         return;
     if (client->result != SDO_BUSY || client->send_pending)
         return; /* none is due */
-    if ((is_abort || !client->in_segments) && sdo_read_object(frame) != client->object)
+    if ((is_abort || !client->in_segments) && takt_sdo_read_object(frame) != client->object)
         return; /* of a transfer before */
     if (is_abort) {
         client->result = SDO_ABORTED;
@@ -216,7 +216,7 @@ void sdo_client_take(struct sdo_client *client, const struct can_frame *frame)
     }
 }
 
-void sdo_client_tick(struct sdo_client *client)
+void takt_sdo_client_tick(struct sdo_client *client)
 {
     if (client->result != SDO_BUSY || client->waited_cycles++ < client->timeout_cycles)
         return;

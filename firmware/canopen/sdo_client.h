@@ -3,11 +3,11 @@
  * time; values of up to four bytes expedited, longer ones in segments. It knows no port and no
  * clock: whoever owns it hands in frames and counts cycles.
  *
- *     sdo_client_download(&client, node, object, bytes, length, timeout_cycles);
+ *     takt_sdo_client_download(&client, node, object, bytes, length, timeout_cycles);
  *     every cycle:
- *         sdo_client_take(&client, &frame)          for every frame that has come
- *         sdo_client_next(&client, &frame)          true: send it; sdo_client_sent(&client) when that worked
- *         sdo_client_tick(&client)                  once
+ *         takt_sdo_client_take(&client, &frame)          for every frame that has come
+ *         takt_sdo_client_next(&client, &frame)          true: send it; takt_sdo_client_sent(&client) when that worked
+ *         takt_sdo_client_tick(&client)                  once
  *     until sdo_client_is_busy(&client) is false; then client.result
  *
  * Goals: a lost, late, doubled or foreign frame never completes a transfer wrongly; a transfer
@@ -56,17 +56,17 @@ struct sdo_client {
  * Begins a transfer; one that is under way is forgotten. value: copied. length: 1 ...
  * SDO_CLIENT_VALUE_MAX.
  */
-void sdo_client_download(struct sdo_client *client, uint8_t node, uint32_t object,
-                         const uint8_t *value, unsigned length, uint32_t timeout_cycles);
-void sdo_client_upload(struct sdo_client *client, uint8_t node, uint32_t object,
-                       uint32_t timeout_cycles);
+void takt_sdo_client_download(struct sdo_client *client, uint8_t node, uint32_t object,
+                              const uint8_t *value, unsigned length, uint32_t timeout_cycles);
+void takt_sdo_client_upload(struct sdo_client *client, uint8_t node, uint32_t object,
+                            uint32_t timeout_cycles);
 
 /* The same for a number of 1, 2 or 4 bytes. */
-void sdo_client_download_number(struct sdo_client *client, uint8_t node, uint32_t object,
-                                uint32_t value, unsigned length, uint32_t timeout_cycles);
+void takt_sdo_client_download_number(struct sdo_client *client, uint8_t node, uint32_t object,
+                                     uint32_t value, unsigned length, uint32_t timeout_cycles);
 
 /* The value of SDO_DONE as a number; only its first four bytes count. */
-uint32_t sdo_client_number(const struct sdo_client *client);
+uint32_t takt_sdo_client_number(const struct sdo_client *client);
 
 static inline bool sdo_client_is_busy(const struct sdo_client *client)
 {
@@ -74,13 +74,13 @@ static inline bool sdo_client_is_busy(const struct sdo_client *client)
 }
 
 /* A frame has come; whatever is no answer to the transfer is passed over. */
-void sdo_client_take(struct sdo_client *client, const struct can_frame *frame);
+void takt_sdo_client_take(struct sdo_client *client, const struct can_frame *frame);
 
-/* True: *frame is to be sent. It is given again until sdo_client_sent says that it has been. */
-bool sdo_client_next(const struct sdo_client *client, struct can_frame *frame);
-void sdo_client_sent(struct sdo_client *client);
+/* True: *frame is to be sent. It is given again until takt_sdo_client_sent says that it has been. */
+bool takt_sdo_client_next(const struct sdo_client *client, struct can_frame *frame);
+void takt_sdo_client_sent(struct sdo_client *client);
 
 /* A cycle has passed. */
-void sdo_client_tick(struct sdo_client *client);
+void takt_sdo_client_tick(struct sdo_client *client);
 
 #endif

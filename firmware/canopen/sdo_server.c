@@ -3,44 +3,45 @@
 
 #include <string.h>
 
-void sdo_server_init(struct sdo_server *server, uint8_t node, const struct sdo_server_owner *owner)
+void takt_sdo_server_init(struct sdo_server *server, uint8_t node,
+                          const struct sdo_server_owner *owner)
 {
     memset(server, 0, sizeof *server);
     server->owner = *owner;
     server->node = node;
 }
 
-void sdo_server_reset(struct sdo_server *server)
+void takt_sdo_server_reset(struct sdo_server *server)
 {
     server->state = SDO_SERVER_IDLE;
 }
 
-bool sdo_server_send(struct sdo_server *server, const struct can_frame *frame)
+bool takt_sdo_server_send(struct sdo_server *server, const struct can_frame *frame)
 {
     return server->owner.send(server->owner.context, frame);
 }
 
-void sdo_server_answer(struct sdo_server *server, unsigned command, uint32_t value)
+void takt_sdo_server_answer(struct sdo_server *server, unsigned command, uint32_t value)
 {
     struct can_frame frame;
-    sdo_write_initiate(&frame, (uint16_t)(SDO_RESPONSE_FUNCTION + server->node), (uint8_t)command,
-                       server->object, value);
-    (void)sdo_server_send(server, &frame);
+    takt_sdo_write_initiate(&frame, (uint16_t)(SDO_RESPONSE_FUNCTION + server->node),
+                            (uint8_t)command, server->object, value);
+    (void)takt_sdo_server_send(server, &frame);
 }
 
-void sdo_server_abort(struct sdo_server *server, uint32_t code)
+void takt_sdo_server_abort(struct sdo_server *server, uint32_t code)
 {
-    sdo_server_answer(server, SDO_ABORT, code);
+    takt_sdo_server_answer(server, SDO_ABORT, code);
     server->state = SDO_SERVER_IDLE;
 }
 
-bool sdo_server_open(struct sdo_server *server)
+bool takt_sdo_server_open(struct sdo_server *server)
 {
     uint32_t code = server->owner.read(server->owner.context, server->object, server->number,
                                        &server->source, &server->length);
     server->moved = 0;
     if (code != SDO_ABORT_NONE)
-        sdo_server_abort(server, code);
+        takt_sdo_server_abort(server, code);
     return code == SDO_ABORT_NONE;
 }
 
@@ -52,26 +53,26 @@ static uint32_t expedited_value(const struct sdo_server *server)
 }
 
 /* An empty value has no expedited form: its length is 0 and one empty segment follows. */
-void sdo_server_begin_upload(struct sdo_server *server)
+void takt_sdo_server_begin_upload(struct sdo_server *server)
 {
     if (server->length >= 1 && server->length <= SDO_EXPEDITED_MAX) {
         unsigned unused = SDO_EXPEDITED_MAX - (unsigned)server->length;
-        sdo_server_answer(server,
-                          SDO_RESPONSE_UPLOAD | unused << 2 | SDO_EXPEDITED | SDO_SIZE_GIVEN,
-                          expedited_value(server));
+        takt_sdo_server_answer(server,
+                               SDO_RESPONSE_UPLOAD | unused << 2 | SDO_EXPEDITED | SDO_SIZE_GIVEN,
+                               expedited_value(server));
         server->state = SDO_SERVER_IDLE;
         return;
     }
-    sdo_server_answer(server, SDO_RESPONSE_UPLOAD | SDO_SIZE_GIVEN, (uint32_t)server->length);
+    takt_sdo_server_answer(server, SDO_RESPONSE_UPLOAD | SDO_SIZE_GIVEN, (uint32_t)server->length);
     server->state = SDO_SERVER_UPLOAD;
     server->toggle = 0;
 }
 
-bool sdo_server_deliver(struct sdo_server *server, const uint8_t *bytes, size_t length)
+bool takt_sdo_server_deliver(struct sdo_server *server, const uint8_t *bytes, size_t length)
 {
     uint32_t code = server->owner.write(server->owner.context, server->object, bytes, length);
     if (code != SDO_ABORT_NONE)
-        sdo_server_abort(server, code);
+        takt_sdo_server_abort(server, code);
     return code == SDO_ABORT_NONE;
 }
 
@@ -80,22 +81,22 @@ static void take_download(struct sdo_server *server, const struct can_frame *fra
     uint8_t command = frame->data[0];
     uint32_t code = server->owner.may_write(server->owner.context, server->object);
     if (code != SDO_ABORT_NONE) {
-        sdo_server_abort(server, code);
+        takt_sdo_server_abort(server, code);
     } else if (command & SDO_EXPEDITED) {
         unsigned unused = command & SDO_SIZE_GIVEN ? sdo_unused_expedited(command) : 0;
         server->state = SDO_SERVER_IDLE;
-        if (sdo_server_deliver(server, frame->data + 4, SDO_EXPEDITED_MAX - unused))
-            sdo_server_answer(server, SDO_RESPONSE_DOWNLOAD, 0);
+        if (takt_sdo_server_deliver(server, frame->data + 4, SDO_EXPEDITED_MAX - unused))
+            takt_sdo_server_answer(server, SDO_RESPONSE_DOWNLOAD, 0);
     } else {
         server->expected = command & SDO_SIZE_GIVEN ? little_endian_read32(frame->data + 4) : 0;
         if (server->expected > SDO_SERVER_WRITE_MAX) {
-            sdo_server_abort(server, SDO_ABORT_TOO_LONG);
+            takt_sdo_server_abort(server, SDO_ABORT_TOO_LONG);
             return;
         }
         server->state = SDO_SERVER_DOWNLOAD;
         server->moved = 0;
         server->toggle = 0;
-        sdo_server_answer(server, SDO_RESPONSE_DOWNLOAD, 0);
+        takt_sdo_server_answer(server, SDO_RESPONSE_DOWNLOAD, 0);
     }
 }
 
@@ -107,7 +108,7 @@ static void answer_segment(struct sdo_server *server, unsigned command, const ui
     frame.data[0] = (uint8_t)command;
     if (length > 0)
         memcpy(frame.data + 1, bytes, length);
-    (void)sdo_server_send(server, &frame);
+    (void)takt_sdo_server_send(server, &frame);
     server->toggle ^= SDO_TOGGLE;
 }
 
@@ -116,9 +117,9 @@ static void end_download(struct sdo_server *server, uint8_t toggle)
 {
     server->state = SDO_SERVER_IDLE;
     if (server->expected != 0 && server->moved != server->expected)
-        sdo_server_abort(server, server->moved < server->expected ? SDO_ABORT_TOO_SHORT
-                                                                  : SDO_ABORT_TOO_LONG);
-    else if (sdo_server_deliver(server, server->data, server->moved))
+        takt_sdo_server_abort(server, server->moved < server->expected ? SDO_ABORT_TOO_SHORT
+                                                                       : SDO_ABORT_TOO_LONG);
+    else if (takt_sdo_server_deliver(server, server->data, server->moved))
         answer_segment(server, SDO_RESPONSE_DOWNLOAD_SEGMENT | toggle, NULL, 0);
 }
 
@@ -127,15 +128,15 @@ static void take_download_segment(struct sdo_server *server, const struct can_fr
     uint8_t command = frame->data[0];
     size_t length = SDO_SEGMENT_MAX - sdo_unused_segment(command);
     if (server->state != SDO_SERVER_DOWNLOAD) {
-        sdo_server_abort(server, SDO_ABORT_COMMAND);
+        takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
         return;
     }
     if ((command & SDO_TOGGLE) != server->toggle) {
-        sdo_server_abort(server, SDO_ABORT_TOGGLE);
+        takt_sdo_server_abort(server, SDO_ABORT_TOGGLE);
         return;
     }
     if (server->moved + length > SDO_SERVER_WRITE_MAX) {
-        sdo_server_abort(server, SDO_ABORT_TOO_LONG);
+        takt_sdo_server_abort(server, SDO_ABORT_TOO_LONG);
         return;
     }
     memcpy(server->data + server->moved, frame->data + 1, length);
@@ -153,11 +154,11 @@ static void take_upload_segment(struct sdo_server *server, const struct can_fram
     unsigned unused = SDO_SEGMENT_MAX - (unsigned)length;
     unsigned last = length == left ? SDO_LAST : 0;
     if (server->state != SDO_SERVER_UPLOAD) {
-        sdo_server_abort(server, SDO_ABORT_COMMAND);
+        takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
         return;
     }
     if ((frame->data[0] & SDO_TOGGLE) != server->toggle) {
-        sdo_server_abort(server, SDO_ABORT_TOGGLE);
+        takt_sdo_server_abort(server, SDO_ABORT_TOGGLE);
         return;
     }
     answer_segment(server, SDO_RESPONSE_UPLOAD_SEGMENT | server->toggle | unused << 1 | last,
@@ -170,15 +171,15 @@ static void take_upload_segment(struct sdo_server *server, const struct can_fram
 /* Requests that begin a transfer name their object; a transfer under way is forgotten. */
 static void take_request(struct sdo_server *server, const struct can_frame *frame)
 {
-    server->object = sdo_read_object(frame);
+    server->object = takt_sdo_read_object(frame);
     server->state = SDO_SERVER_IDLE;
     if ((frame->data[0] & SDO_COMMAND_MASK) == SDO_REQUEST_DOWNLOAD)
         take_download(server, frame);
-    else if (sdo_server_open(server))
-        sdo_server_begin_upload(server);
+    else if (takt_sdo_server_open(server))
+        takt_sdo_server_begin_upload(server);
 }
 
-void sdo_server_take(struct sdo_server *server, const struct can_frame *frame)
+void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *frame)
 {
     if (frame->length != SDO_LENGTH)
         return;
@@ -187,7 +188,7 @@ void sdo_server_take(struct sdo_server *server, const struct can_frame *frame)
         return;
     }
     if (server->state == SDO_SERVER_TAKING) {
-        sdo_server_take_block_segment(server, frame);
+        takt_sdo_server_take_block_segment(server, frame);
         return;
     }
     switch (frame->data[0] & SDO_COMMAND_MASK) {
@@ -202,13 +203,13 @@ void sdo_server_take(struct sdo_server *server, const struct can_frame *frame)
         take_upload_segment(server, frame);
         break;
     case SDO_REQUEST_BLOCK_UPLOAD:
-        sdo_server_take_block_upload(server, frame);
+        takt_sdo_server_take_block_upload(server, frame);
         break;
     case SDO_REQUEST_BLOCK_DOWNLOAD:
-        sdo_server_take_block_download(server, frame);
+        takt_sdo_server_take_block_download(server, frame);
         break;
     default:
-        sdo_server_abort(server, SDO_ABORT_COMMAND);
+        takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
         break;
     }
 }

@@ -74,15 +74,16 @@ struct sdo_server {
     uint8_t data[SDO_SERVER_WRITE_MAX + SDO_SEGMENT_MAX]; /* download */
 };
 
-void sdo_server_init(struct sdo_server *server, uint8_t node, const struct sdo_server_owner *owner);
+void takt_sdo_server_init(struct sdo_server *server, uint8_t node,
+                          const struct sdo_server_owner *owner);
 
 /* Forgets the transfer under way without a word. */
-void sdo_server_reset(struct sdo_server *server);
+void takt_sdo_server_reset(struct sdo_server *server);
 
 /* A request has come, a frame of 8 bytes to this node's server; the answer is sent at once. */
-void sdo_server_take(struct sdo_server *server, const struct can_frame *frame);
+void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *frame);
 
 /* Segments of a block that found no room are sent again. To be called now and then. */
-void sdo_server_go_on(struct sdo_server *server);
+void takt_sdo_server_go_on(struct sdo_server *server);
 
 #endif

@@ -11,8 +11,8 @@
 
 #define SYNC_COB_ID 0x080
 
-void sync_write(struct can_frame *frame);
+void takt_sync_write(struct can_frame *frame);
 /* A producer may add one byte, the SYNC counter (object 1019); it is tolerated and ignored. */
-bool sync_is(const struct can_frame *frame);
+bool takt_sync_is(const struct can_frame *frame);
 
 #endif

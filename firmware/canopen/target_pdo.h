@@ -24,10 +24,10 @@
  */
 #define TARGET_PDO_PAIR 2
 #define TARGET_PDO_FD   6
-void target_pdo_set(struct pdo *pdo, const uint8_t node[], unsigned count, unsigned index,
-                    unsigned group);
+void takt_target_pdo_set(struct pdo *pdo, const uint8_t node[], unsigned count, unsigned index,
+                         unsigned group);
 
 /* Drives of the group of this one. */
-unsigned target_pdo_members(unsigned count, unsigned index, unsigned group);
+unsigned takt_target_pdo_members(unsigned count, unsigned index, unsigned group);
 
 #endif

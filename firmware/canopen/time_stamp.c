@@ -5,14 +5,14 @@
 /* The upper four bits of the milliseconds are reserved. */
 #define MS_MASK 0x0FFFFFFFu
 
-void time_stamp_write(struct can_frame *frame, const struct time_stamp *time)
+void takt_time_stamp_write(struct can_frame *frame, const struct time_stamp *time)
 {
     *frame = (struct can_frame){.id = TIME_COB_ID, .length = TIME_FRAME_LENGTH};
     little_endian_write32(frame->data, time->ms & MS_MASK);
     little_endian_write16(frame->data + 4, time->days);
 }
 
-bool time_stamp_read(const struct can_frame *frame, struct time_stamp *time)
+bool takt_time_stamp_read(const struct can_frame *frame, struct time_stamp *time)
 {
     if (frame->length != TIME_FRAME_LENGTH)
         return false;
@@ -21,7 +21,7 @@ bool time_stamp_read(const struct can_frame *frame, struct time_stamp *time)
     return time->ms < TIME_MS_PER_DAY;
 }
 
-struct time_stamp time_stamp_add(struct time_stamp time, uint64_t by_ms)
+struct time_stamp takt_time_stamp_add(struct time_stamp time, uint64_t by_ms)
 {
     uint64_t ms = time.ms + by_ms;
     return (struct time_stamp){.ms = (uint32_t)(ms % TIME_MS_PER_DAY),

@@ -19,11 +19,11 @@ struct time_stamp {
     uint16_t days; /* since 1 January 1984 */
 };
 
-void time_stamp_write(struct can_frame *frame, const struct time_stamp *time);
+void takt_time_stamp_write(struct can_frame *frame, const struct time_stamp *time);
 /* False: it is not of that length, or no time of a day. The identifier is the caller's business. */
-bool time_stamp_read(const struct can_frame *frame, struct time_stamp *time);
+bool takt_time_stamp_read(const struct can_frame *frame, struct time_stamp *time);
 
 /* The time by_ms later. */
-struct time_stamp time_stamp_add(struct time_stamp time, uint64_t by_ms);
+struct time_stamp takt_time_stamp_add(struct time_stamp time, uint64_t by_ms);
 
 #endif

@@ -1,4 +1,4 @@
-/* In the place of everything else here, in a build without it. No machine that asks for more gets this far: machine_check.
+/* In the place of everything else here, in a build without it. No machine that asks for more gets this far: takt_machine_check.
  */
 #include "classic/classic.h"
 #include "classic/interpolator.h"
@@ -6,26 +6,26 @@
 
 #include <assert.h>
 
-bool classic_is_there(void)
+bool takt_classic_is_there(void)
 {
     return false;
 }
 
-void interpolator_init(struct interpolator *i, const struct interpolator_config *config)
+void takt_interpolator_init(struct interpolator *i, const struct interpolator_config *config)
 {
     i->is_absent = true;
     (void)config;
 }
 
-double interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
+double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
 {
     (void)range_mm;
     (void)word_bits;
     return increment_mm;
 }
 
-void interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
-                        bool landed, struct point *cmd)
+void takt_interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
+                             bool landed, struct point *cmd)
 {
     (void)i;
     (void)curve;
@@ -34,7 +34,7 @@ void interpolator_cycle(struct interpolator *i, const struct curve *curve, uint3
     (void)cmd;
 }
 
-const struct interpolator_errors *interpolator_get_errors(const struct interpolator *i)
+const struct interpolator_errors *takt_interpolator_get_errors(const struct interpolator *i)
 {
     static const struct interpolator_errors none;
 
@@ -42,14 +42,14 @@ const struct interpolator_errors *interpolator_get_errors(const struct interpola
     return &none;
 }
 
-void product_init(struct product *p, const struct product_config *config)
+void takt_product_init(struct product *p, const struct product_config *config)
 {
     p->is_absent = true;
     (void)config;
 }
 
-void product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
-                   struct cycle_record *record)
+void takt_product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
+                        struct cycle_record *record)
 {
     (void)p;
     (void)m;

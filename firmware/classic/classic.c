@@ -1,6 +1,6 @@
 #include "classic/classic.h"
 
-bool classic_is_there(void)
+bool takt_classic_is_there(void)
 {
     return true;
 }

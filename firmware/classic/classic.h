@@ -7,6 +7,6 @@
 
 #include <stdbool.h>
 
-bool classic_is_there(void);
+bool takt_classic_is_there(void);
 
 #endif

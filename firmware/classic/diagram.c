@@ -9,20 +9,21 @@
 /* A time that is longer than whole cycles by less than this part of one is rounding. */
 #define CYCLE_SLACK 1e-9
 
-double diagram_ramp_s(const struct diagram_limits *limits, double change_mm_s)
+double takt_diagram_ramp_s(const struct diagram_limits *limits, double change_mm_s)
 {
     double round;
 
-    return s_curve_time(change_mm_s, limits->a_mm_s2, limits->j_mm_s3, &round);
+    return takt_s_curve_time(change_mm_s, limits->a_mm_s2, limits->j_mm_s3, &round);
 }
 
 /* A symmetric ramp covers its mean feed times its time. */
 static double ramp_way(const struct diagram_limits *limits, double from_mm_s, double to_mm_s)
 {
-    return 0.5 * (from_mm_s + to_mm_s) * diagram_ramp_s(limits, maths_abs(to_mm_s - from_mm_s));
+    return 0.5 * (from_mm_s + to_mm_s) *
+           takt_diagram_ramp_s(limits, maths_abs(to_mm_s - from_mm_s));
 }
 
-double diagram_reach(const struct diagram_limits *limits, double feed_mm_s)
+double takt_diagram_reach(const struct diagram_limits *limits, double feed_mm_s)
 {
     double low = feed_mm_s;
     double high = limits->feed_mm_s;
@@ -62,17 +63,18 @@ static double find_cruise(const struct diagram_limits *limits, double start, dou
 
 static double whole_cycles(double time_s, double cycle_s)
 {
-    return cycle_s * maths_ceil(time_s / cycle_s - CYCLE_SLACK);
+    return cycle_s * takt_maths_ceil(time_s / cycle_s - CYCLE_SLACK);
 }
 
 static double set_ramp(const struct diagram_limits *limits, double change, double cycle_s,
                        double *round)
 {
-    return whole_cycles(s_curve_time(change, limits->a_mm_s2, limits->j_mm_s3, round), cycle_s);
+    return whole_cycles(takt_s_curve_time(change, limits->a_mm_s2, limits->j_mm_s3, round),
+                        cycle_s);
 }
 
-void diagram_set(struct diagram *d, const struct diagram_limits *limits, double start_mm_s,
-                 double end_mm_s, double cycle_s)
+void takt_diagram_set(struct diagram *d, const struct diagram_limits *limits, double start_mm_s,
+                      double end_mm_s, double cycle_s)
 {
     d->start_mm_s = start_mm_s;
     d->end_mm_s = end_mm_s;
@@ -87,12 +89,12 @@ void diagram_set(struct diagram *d, const struct diagram_limits *limits, double 
     d->kl = limits->length_mm / (ramps_mm + d->cruise_mm_s * d->even_s);
 }
 
-double diagram_time(const struct diagram *d)
+double takt_diagram_time(const struct diagram *d)
 {
     return d->up_s + d->even_s + d->down_s;
 }
 
-bool diagram_brakes(const struct diagram *d, double time_s)
+bool takt_diagram_brakes(const struct diagram *d, double time_s)
 {
     return time_s > d->up_s + d->even_s;
 }
@@ -100,10 +102,10 @@ bool diagram_brakes(const struct diagram *d, double time_s)
 /* Way of a part of a ramp: F0 t + (F1 - F0) T integral(t/T). */
 static double way_of_ramp(double from, double to, double total_s, double round, double time_s)
 {
-    return from * time_s + (to - from) * total_s * s_curve_integral(time_s / total_s, round);
+    return from * time_s + (to - from) * total_s * takt_s_curve_integral(time_s / total_s, round);
 }
 
-double diagram_way(const struct diagram *d, double time_s)
+double takt_diagram_way(const struct diagram *d, double time_s)
 {
     const double up_mm = 0.5 * (d->start_mm_s + d->cruise_mm_s) * d->up_s;
     const double down_s = time_s - d->up_s - d->even_s;
@@ -119,18 +121,18 @@ double diagram_way(const struct diagram *d, double time_s)
                                 maths_min(down_s, d->down_s)));
 }
 
-double diagram_feed(const struct diagram *d, double time_s)
+double takt_diagram_feed(const struct diagram *d, double time_s)
 {
     const double down_s = time_s - d->up_s - d->even_s;
 
     if (time_s < d->up_s) {
-        return d->kl * (d->start_mm_s +
-                        (d->cruise_mm_s - d->start_mm_s) * s_curve(time_s / d->up_s, d->up_round));
+        return d->kl * (d->start_mm_s + (d->cruise_mm_s - d->start_mm_s) *
+                                            takt_s_curve(time_s / d->up_s, d->up_round));
     }
     if (down_s <= 0.0) {
         return d->kl * d->cruise_mm_s;
     }
     return d->kl *
            (d->cruise_mm_s - (d->cruise_mm_s - d->end_mm_s) *
-                                 s_curve(maths_min(1.0, down_s / d->down_s), d->down_round));
+                                 takt_s_curve(maths_min(1.0, down_s / d->down_s), d->down_round));
 }

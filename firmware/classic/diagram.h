@@ -33,23 +33,23 @@ struct diagram {
 };
 
 /* Shortest time in which feed changes by so much, >= 0. */
-double diagram_ramp_s(const struct diagram_limits *limits, double change_mm_s);
+double takt_diagram_ramp_s(const struct diagram_limits *limits, double change_mm_s);
 
 /* The highest feed from which, or to which, one can come from another, at most the highest, within the length. */
-double diagram_reach(const struct diagram_limits *limits, double feed_mm_s);
+double takt_diagram_reach(const struct diagram_limits *limits, double feed_mm_s);
 
 /* The diagram between two feeds, each to be reached from the other within the length. */
-void diagram_set(struct diagram *d, const struct diagram_limits *limits, double start_mm_s,
-                 double end_mm_s, double cycle_s);
+void takt_diagram_set(struct diagram *d, const struct diagram_limits *limits, double start_mm_s,
+                      double end_mm_s, double cycle_s);
 
 /* How long it lasts. */
-double diagram_time(const struct diagram *d);
+double takt_diagram_time(const struct diagram *d);
 
 /* Way and feed after a time of it, kl included. */
-double diagram_way(const struct diagram *d, double time_s);
-double diagram_feed(const struct diagram *d, double time_s);
+double takt_diagram_way(const struct diagram *d, double time_s);
+double takt_diagram_feed(const struct diagram *d, double time_s);
 
 /* Does feed fall to its end feed then? */
-bool diagram_brakes(const struct diagram *d, double time_s);
+bool takt_diagram_brakes(const struct diagram *d, double time_s);
 
 #endif

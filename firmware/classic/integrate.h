@@ -31,21 +31,21 @@ struct integrate {
 };
 
 /* A line at rest at its start. Positions count from there. length_mm > 0: of the path. */
-void integrate_begin(struct integrate *i, double unit_mm, const struct point *start,
-                     const struct point *end, double length_mm);
+void takt_integrate_begin(struct integrate *i, double unit_mm, const struct point *start,
+                          const struct point *end, double length_mm);
 
 /* V += a: change of the path's way per cycle. */
-void integrate_accelerate(struct integrate *i, double change_mm);
+void takt_integrate_accelerate(struct integrate *i, double change_mm);
 /* V is set to its exact value, but for the last bit: at the end of an acceleration. */
-void integrate_set_velocity(struct integrate *i, double way_mm);
+void takt_integrate_set_velocity(struct integrate *i, double way_mm);
 /* V = way left / cycles: the end rule. What the division drops, less than a unit a cycle, is left for the exact end. */
-void integrate_aim(struct integrate *i, double cycles);
+void takt_integrate_aim(struct integrate *i, double cycles);
 /* S += V */
-void integrate_advance(struct integrate *i);
+void takt_integrate_advance(struct integrate *i);
 /* S is set to the exact end. */
-void integrate_land(struct integrate *i);
+void takt_integrate_land(struct integrate *i);
 
 /* Distance from the start along every axis, mm. */
-void integrate_get_way(const struct integrate *i, struct point *way);
+void takt_integrate_get_way(const struct integrate *i, struct point *way);
 
 #endif

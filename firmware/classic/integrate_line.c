@@ -3,7 +3,7 @@
 #include "base/maths.h"
 
 /* dS = (V^2 - V_end^2) / (2 a) */
-static double braking_way(const struct integrate_line_config *c, double way_mm)
+static double takt_braking_way(const struct integrate_line_config *c, double way_mm)
 {
     return 0.5 * (way_mm - c->end_mm) * (way_mm + c->end_mm) / c->acceleration_mm;
 }
@@ -22,18 +22,18 @@ static void measure_left(struct integrate_line *l)
         (double)(l->axes.end[n] - l->axes.position[n]) * l->axes.unit_mm / l->axes.ratio[n];
 }
 
-void integrate_line_begin(struct integrate_line *l, const struct integrate_line_config *config,
-                          const struct point *start, const struct point *end)
+void takt_integrate_line_begin(struct integrate_line *l, const struct integrate_line_config *config,
+                               const struct point *start, const struct point *end)
 {
     *l = (struct integrate_line){.config = *config};
-    integrate_begin(&l->axes, config->unit_mm, start, end, config->length_mm);
+    takt_integrate_begin(&l->axes, config->unit_mm, start, end, config->length_mm);
     for (unsigned n = 0; n < AXIS_COUNT; n++) {
         if (maths_abs(l->axes.ratio[n]) > maths_abs(l->axes.ratio[l->leading])) {
             l->leading = n;
         }
     }
     l->way_mm = config->start_mm;
-    integrate_set_velocity(&l->axes, l->way_mm);
+    takt_integrate_set_velocity(&l->axes, l->way_mm);
     measure_left(l);
 }
 
@@ -41,7 +41,7 @@ void integrate_line_begin(struct integrate_line *l, const struct integrate_line_
 static bool must_brake(const struct integrate_line *l, double way_mm)
 {
     const struct integrate_line_config *c = &l->config;
-    const double ahead = braking_way(c, way_mm) + end_cycles(l) * c->end_mm;
+    const double ahead = takt_braking_way(c, way_mm) + end_cycles(l) * c->end_mm;
 
     return l->left_mm - way_mm <= ahead;
 }
@@ -54,11 +54,11 @@ static void accelerate(struct integrate_line *l)
         l->phase = INTEGRATE_BRAKING;
     } else if (next >= l->config.feed_mm) {
         l->way_mm = l->config.feed_mm;
-        integrate_set_velocity(&l->axes, l->way_mm);
+        takt_integrate_set_velocity(&l->axes, l->way_mm);
         l->phase = INTEGRATE_CONSTANT;
     } else {
         l->way_mm = next;
-        integrate_accelerate(&l->axes, l->config.acceleration_mm);
+        takt_integrate_accelerate(&l->axes, l->config.acceleration_mm);
     }
 }
 
@@ -69,11 +69,11 @@ static void brake(struct integrate_line *l)
 
     if (l->way_mm - l->config.acceleration_mm > lowest) {
         l->way_mm -= l->config.acceleration_mm;
-        integrate_accelerate(&l->axes, -l->config.acceleration_mm);
+        takt_integrate_accelerate(&l->axes, -l->config.acceleration_mm);
         return;
     }
     l->way_mm = maths_min(l->way_mm, lowest);
-    integrate_set_velocity(&l->axes, l->way_mm);
+    takt_integrate_set_velocity(&l->axes, l->way_mm);
     l->phase = INTEGRATE_ENDING;
 }
 
@@ -83,7 +83,7 @@ static void look_for_end(struct integrate_line *l)
     const double reach = l->config.end_mm * end_cycles(l);
 
     if (l->phase == INTEGRATE_ENDING && l->config.end_mm > 0.0 && l->left_mm <= reach) {
-        integrate_aim(&l->axes, end_cycles(l));
+        takt_integrate_aim(&l->axes, end_cycles(l));
         l->phase = INTEGRATE_AIMED;
     }
 }
@@ -116,20 +116,20 @@ static void choose_velocity(struct integrate_line *l)
     look_for_end(l);
 }
 
-bool integrate_line_cycle(struct integrate_line *l)
+bool takt_integrate_line_cycle(struct integrate_line *l)
 {
     if (l->phase == INTEGRATE_LANDED) {
         return false;
     }
     choose_velocity(l);
     if (ends_now(l)) {
-        integrate_land(&l->axes);
+        takt_integrate_land(&l->axes);
         l->phase = INTEGRATE_LANDED;
         l->left_mm = 0.0;
         return true;
     }
     l->aimed_cycles += l->phase == INTEGRATE_AIMED ? 1U : 0U;
-    integrate_advance(&l->axes);
+    takt_integrate_advance(&l->axes);
     measure_left(l);
     return true;
 }

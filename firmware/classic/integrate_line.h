@@ -43,10 +43,10 @@ struct integrate_line {
     unsigned aimed_cycles;
 };
 
-void integrate_line_begin(struct integrate_line *l, const struct integrate_line_config *config,
-                          const struct point *start, const struct point *end);
+void takt_integrate_line_begin(struct integrate_line *l, const struct integrate_line_config *config,
+                               const struct point *start, const struct point *end);
 
 /* One cycle. False: the end had been reached before. */
-bool integrate_line_cycle(struct integrate_line *l);
+bool takt_integrate_line_cycle(struct integrate_line *l);
 
 #endif

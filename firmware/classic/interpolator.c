@@ -8,14 +8,14 @@
 /* Feeds that differ by less, as a part, are the same: rounding of the places they are taken from. */
 #define SAME_FEED 1e-6
 
-void interpolator_init(struct interpolator *i, const struct interpolator_config *config)
+void takt_interpolator_init(struct interpolator *i, const struct interpolator_config *config)
 {
     memset(i, 0, sizeof(*i));
     i->config = *config;
 }
 
 /* range < unit 2^(m-1) */
-double interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
+double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
 {
     const double most = (double)(INT64_C(1) << (word_bits - 1U));
     double unit_mm = increment_mm;
@@ -29,7 +29,7 @@ double interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_
     return unit_mm;
 }
 
-const struct interpolator_errors *interpolator_get_errors(const struct interpolator *i)
+const struct interpolator_errors *takt_interpolator_get_errors(const struct interpolator *i)
 {
     return &i->errors;
 }
@@ -49,8 +49,8 @@ static bool is_for(enum interpolator_kind kind, const struct curve *c)
 
 static void begin_line(struct interpolator *i)
 {
-    integrate_begin(&i->integrate, i->config.unit_mm, &i->curve.start, &i->curve.end,
-                    i->curve.length_mm);
+    takt_integrate_begin(&i->integrate, i->config.unit_mm, &i->curve.start, &i->curve.end,
+                         i->curve.length_mm);
 }
 
 /* The last bit of a word of angles, all of which are at most dphi = V_max dt / R (3.17). */
@@ -67,8 +67,8 @@ static void begin_circle(struct interpolator *i)
 {
     const struct curve *c = &i->curve;
 
-    rotate_begin(&i->rotate, c->start.at[c->arc.first] - c->arc.centre_mm[0],
-                 c->start.at[c->arc.second] - c->arc.centre_mm[1], quantum_rad(i));
+    takt_rotate_begin(&i->rotate, c->start.at[c->arc.first] - c->arc.centre_mm[0],
+                      c->start.at[c->arc.second] - c->arc.centre_mm[1], quantum_rad(i));
 }
 
 static void begin_block(struct interpolator *i, const struct curve *curve, uint32_t block)
@@ -115,14 +115,14 @@ static void choose_velocity(struct interpolator *i, double way_mm, double left_m
 
     if (!constant) {
         i->aimed = false;
-        integrate_accelerate(&i->integrate, change);
+        takt_integrate_accelerate(&i->integrate, change);
     } else if (i->aimed) {
         return;
     } else if (left_mm <= way_mm * (double)(1U << i->config.end_shift)) {
-        integrate_aim(&i->integrate, left_mm / way_mm);
+        takt_integrate_aim(&i->integrate, left_mm / way_mm);
         i->aimed = true;
     } else {
-        integrate_set_velocity(&i->integrate, way_mm);
+        takt_integrate_set_velocity(&i->integrate, way_mm);
     }
 }
 
@@ -150,8 +150,8 @@ static void integrate_to(struct interpolator *i, double part, struct point *cmd)
     struct point done;
 
     choose_velocity(i, way, (1.0 - i->part) * i->curve.length_mm);
-    integrate_advance(&i->integrate);
-    integrate_get_way(&i->integrate, &done);
+    takt_integrate_advance(&i->integrate);
+    takt_integrate_get_way(&i->integrate, &done);
     i->way_mm = way;
     for (int n = 0; n < AXIS_COUNT; n++) {
         cmd->at[n] = i->curve.start.at[n] + done.at[n];
@@ -173,13 +173,13 @@ static void add_rotation_bounds(struct interpolator *i, double angle_rad)
     i->along_rad += square * maths_abs(angle_rad) / 6.0;
     i->growth += square * square / 8.0;
     raise_to(&i->errors.along_bound_mm, radius * (i->along_rad + 0.5 * i->rotate.quantum_rad));
-    raise_to(&i->errors.contour_bound_mm, radius * (maths_exp(i->growth) - 1.0));
+    raise_to(&i->errors.contour_bound_mm, radius * (takt_maths_exp(i->growth) - 1.0));
 }
 
 static void rotate_to(struct interpolator *i, double part, struct point *cmd)
 {
     const struct curve_arc *arc = &i->curve.arc;
-    const double angle = rotate_step(&i->rotate, (part - i->part) * arc->sweep_rad);
+    const double angle = takt_rotate_step(&i->rotate, (part - i->part) * arc->sweep_rad);
     const double a = i->rotate.a;
     const double b = i->rotate.b;
 
@@ -190,7 +190,7 @@ static void rotate_to(struct interpolator *i, double part, struct point *cmd)
     raise_to(&i->errors.angle_rad, maths_abs(angle));
     raise_to(&i->errors.contour_mm, maths_abs(maths_sqrt(a * a + b * b) - arc->radius_start_mm));
     raise_to(&i->errors.along_mm,
-             arc->radius_start_mm * maths_abs(maths_atan2(x * b - y * a, x * a + y * b)));
+             arc->radius_start_mm * maths_abs(takt_maths_atan2(x * b - y * a, x * a + y * b)));
     cmd->at[arc->first] = arc->centre_mm[0] + a;
     cmd->at[arc->second] = arc->centre_mm[1] + b;
 }
@@ -199,7 +199,7 @@ static void rotate_to(struct interpolator *i, double part, struct point *cmd)
 static void interpolate(struct interpolator *i, bool landed, struct point *cmd)
 {
     const struct point exact = *cmd;
-    const double part = landed ? 1.0 : curve_place(&i->curve, cmd, i->part);
+    const double part = landed ? 1.0 : takt_curve_place(&i->curve, cmd, i->part);
 
     if (i->curve.kind == CURVE_LINE) {
         integrate_to(i, part, cmd);
@@ -214,8 +214,8 @@ static void interpolate(struct interpolator *i, bool landed, struct point *cmd)
     }
 }
 
-void interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
-                        bool landed, struct point *cmd)
+void takt_interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
+                             bool landed, struct point *cmd)
 {
     if (interpolator_is_exact(i)) {
         return;

@@ -38,10 +38,10 @@ struct interpolator_config {
 #define INTERPOLATOR_ANGLE_BITS_MAX 24
 
 /*
- * What the last bit of a signed word of so many bits is worth, when it counts a range: the increment times a power of two,
- * the least with which the range fits. All > 0.
+ * What the last bit of a signed word of word_bits bits is worth, when it counts a range: the increment times a power of
+ * two, the least with which the range fits. All > 0.
  */
-double interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits);
+double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits);
 
 /* Largest deviations from the exact setpoints, and what was to be expected; mm. */
 struct interpolator_errors {
@@ -71,7 +71,7 @@ struct interpolator {
 #endif
 };
 
-void interpolator_init(struct interpolator *i, const struct interpolator_config *config);
+void takt_interpolator_init(struct interpolator *i, const struct interpolator_config *config);
 
 /* Does it leave all setpoints as they are? */
 static inline bool interpolator_is_exact(const struct interpolator *i)
@@ -87,9 +87,9 @@ static inline bool interpolator_is_exact(const struct interpolator *i)
  * One cycle of a motion. cmd: in the exact setpoint, on the curve; out what this interpolator makes of it. block tells one
  * motion from the next; landed: cmd is the motion's end.
  */
-void interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
-                        bool landed, struct point *cmd);
+void takt_interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
+                             bool landed, struct point *cmd);
 
-const struct interpolator_errors *interpolator_get_errors(const struct interpolator *i);
+const struct interpolator_errors *takt_interpolator_get_errors(const struct interpolator *i);
 
 #endif

@@ -21,8 +21,8 @@ static double smooth(double velocity, double most, double band)
     return (most - band + (1.0 - k) * over) / velocity;
 }
 
-double limiter_axis(enum limiter_form form, double velocity_mm_s, double most_mm_s,
-                    uint8_t band_percent)
+double takt_limiter_axis(enum limiter_form form, double velocity_mm_s, double most_mm_s,
+                         uint8_t band_percent)
 {
     switch (form) {
     case LIMITER_CEILING:
@@ -35,15 +35,16 @@ double limiter_axis(enum limiter_form form, double velocity_mm_s, double most_mm
     return 1.0;
 }
 
-double limiter_factor(enum limiter_form form, const struct point *velocity_mm_s,
-                      const double most_mm_s[AXIS_COUNT], const uint8_t band_percent[AXIS_COUNT])
+double takt_limiter_factor(enum limiter_form form, const struct point *velocity_mm_s,
+                           const double most_mm_s[AXIS_COUNT],
+                           const uint8_t band_percent[AXIS_COUNT])
 {
     double factor = 1.0;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         if (most_mm_s[i] > 0.0) {
-            factor = maths_min(factor, limiter_axis(form, maths_abs(velocity_mm_s->at[i]),
-                                                    most_mm_s[i], band_percent[i]));
+            factor = maths_min(factor, takt_limiter_axis(form, maths_abs(velocity_mm_s->at[i]),
+                                                         most_mm_s[i], band_percent[i]));
         }
     }
     return factor;

@@ -27,11 +27,12 @@ enum limiter_form {
 #define LIMITER_BAND_PERCENT     5
 
 /* K of one axis: its velocity without the limiter, >= 0, its highest one, > 0, and d in percent of that. */
-double limiter_axis(enum limiter_form form, double velocity_mm_s, double most_mm_s,
-                    uint8_t band_percent);
+double takt_limiter_axis(enum limiter_form form, double velocity_mm_s, double most_mm_s,
+                         uint8_t band_percent);
 
 /* The least K of the axes (11). most_mm_s: of every axis; those that are 0 do not count. */
-double limiter_factor(enum limiter_form form, const struct point *velocity_mm_s,
-                      const double most_mm_s[AXIS_COUNT], const uint8_t band_percent[AXIS_COUNT]);
+double takt_limiter_factor(enum limiter_form form, const struct point *velocity_mm_s,
+                           const double most_mm_s[AXIS_COUNT],
+                           const uint8_t band_percent[AXIS_COUNT]);
 
 #endif

@@ -13,7 +13,7 @@
 /* Less than this part of a cycle is rounding. */
 #define CYCLE_SLACK 1e-6
 
-void product_init(struct product *p, const struct product_config *config)
+void takt_product_init(struct product *p, const struct product_config *config)
 {
     memset(p, 0, sizeof(*p));
     p->config = *config;
@@ -34,8 +34,9 @@ static struct diagram_limits limits_of(const struct path *path, uint32_t index)
     const struct path_block *b = path_at(path, index);
     const struct ceiling_request as_programmed = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
 
-    return (struct diagram_limits){.length_mm = path_length(path, index),
-                                   .feed_mm_s = ceiling_block_feed(path, index, &as_programmed),
+    return (struct diagram_limits){.length_mm = takt_path_length(path, index),
+                                   .feed_mm_s =
+                                       takt_ceiling_block_feed(path, index, &as_programmed),
                                    .a_mm_s2 = (double)b->a_mm_s2,
                                    .j_mm_s3 = (double)b->j_mm_s3};
 }
@@ -44,12 +45,12 @@ static struct diagram_limits limits_of(const struct path *path, uint32_t index)
 static double end_feed(const struct path *path, uint32_t index, double next_start_mm_s)
 {
     const struct path_block *b = path_at(path, index);
-    const double joint_mm_s = b->end == JOINT_STOP ? 0.0 : (double)b->feed_joint_mm_s;
+    const double junction_mm_s = b->end == JUNCTION_STOP ? 0.0 : (double)b->feed_junction_mm_s;
 
     if (!path_at(path, index + 1)->motion) {
         return 0.0;
     }
-    return maths_min(maths_min(joint_mm_s, next_start_mm_s), limits_of(path, index).feed_mm_s);
+    return maths_min(maths_min(junction_mm_s, next_start_mm_s), limits_of(path, index).feed_mm_s);
 }
 
 /* The feed at the end of the oldest block from which the rest can still be stopped (look-ahead). */
@@ -63,7 +64,7 @@ static double plan_end(const struct path *path)
         if (path_at(path, k)->motion) {
             const struct diagram_limits limits = limits_of(path, k);
 
-            start_mm_s = diagram_reach(&limits, is_last ? 0.0 : end_feed(path, k, start_mm_s));
+            start_mm_s = takt_diagram_reach(&limits, is_last ? 0.0 : end_feed(path, k, start_mm_s));
         }
     }
     return path->closed - 1 == path->first ? 0.0 : end_feed(path, path->first, start_mm_s);
@@ -72,9 +73,9 @@ static double plan_end(const struct path *path)
 static void begin_block(struct product *p, const struct motion *m, double start_mm_s)
 {
     const struct diagram_limits limits = limits_of(m->path, m->path->first);
-    const double end_mm_s = maths_min(plan_end(m->path), diagram_reach(&limits, start_mm_s));
+    const double end_mm_s = maths_min(plan_end(m->path), takt_diagram_reach(&limits, start_mm_s));
 
-    diagram_set(&p->diagram, &limits, start_mm_s, end_mm_s, p->config.cycle_s);
+    takt_diagram_set(&p->diagram, &limits, start_mm_s, end_mm_s, p->config.cycle_s);
     p->moves = true;
     p->way_mm = 0.0;
 }
@@ -98,7 +99,8 @@ static double wanted_ratio(const struct block *b, const struct motion_operator *
 /* %Fz stands still while a block brakes. A stop is none of it, nor is what follows one. */
 static bool is_locked(const struct product *p)
 {
-    return diagram_brakes(&p->diagram, p->time_s) && p->override.to > 0.0 && p->override.from > 0.0;
+    return takt_diagram_brakes(&p->diagram, p->time_s) && p->override.to > 0.0 &&
+           p->override.from > 0.0;
 }
 
 /* %Fz: an S-curve whose acceleration and jerk, at the diagram's feed, are the block's. */
@@ -111,14 +113,14 @@ static void follow_override(struct product *p, const struct block *b, double to)
         o->from = o->now;
         o->to = to;
         o->time_s = 0.0;
-        o->total_s = s_curve_time(maths_abs(to - o->now), b->a_mm_s2 / feed_mm_s,
-                                  b->j_mm_s3 / feed_mm_s, &o->round);
+        o->total_s = takt_s_curve_time(maths_abs(to - o->now), b->a_mm_s2 / feed_mm_s,
+                                       b->j_mm_s3 / feed_mm_s, &o->round);
     }
     if (o->total_s == 0.0 || is_locked(p)) {
         return;
     }
     o->time_s = maths_min(o->time_s + p->config.cycle_s, o->total_s);
-    o->now = o->from + (o->to - o->from) * s_curve(o->time_s / o->total_s, o->round);
+    o->now = o->from + (o->to - o->from) * takt_s_curve(o->time_s / o->total_s, o->round);
     if (o->time_s == o->total_s) {
         o->now = o->to;
         o->total_s = 0.0;
@@ -133,14 +135,14 @@ static void limit_axes(struct product *p, const struct motion *m, const struct p
     for (int i = 0; i < AXIS_COUNT; i++) {
         velocity.at[i] = (at->at[i] - m->at.at[i]) / (p->config.cycle_s * p->limiter);
     }
-    p->limiter = limiter_factor(p->config.limiter, &velocity, m->path->limits.velocity_mm_s,
-                                p->config.band_percent);
+    p->limiter = takt_limiter_factor(p->config.limiter, &velocity, m->path->limits.velocity_mm_s,
+                                     p->config.band_percent);
 }
 
 /* Without a limiter of the source: the block's own ceiling, in this cycle. */
 static void keep_ceiling(struct product *p, const struct block *b)
 {
-    const double feed_mm_s = diagram_feed(&p->diagram, p->time_s) * p->override.now;
+    const double feed_mm_s = takt_diagram_feed(&p->diagram, p->time_s) * p->override.now;
 
     if (p->config.limiter == LIMITER_CEILING) {
         p->limiter = feed_mm_s > b->feed_max_mm_s ? b->feed_max_mm_s / feed_mm_s : 1.0;
@@ -154,7 +156,7 @@ static bool is_last(const struct motion *m)
 {
     const struct path *path = m->path;
 
-    return first_block(m)->end == JOINT_STOP || path->first + 1 == path->closed ||
+    return first_block(m)->end == JUNCTION_STOP || path->first + 1 == path->closed ||
            !path_at(path, path->first + 1)->motion;
 }
 
@@ -169,7 +171,7 @@ static double go(struct product *p, struct motion *m, bool *landed, bool *rests)
 
     p->time_s += p->config.cycle_s * p->override.now * p->limiter;
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
-        const double left_s = diagram_time(&p->diagram) - p->time_s;
+        const double left_s = takt_diagram_time(&p->diagram) - p->time_s;
 
         *landed = left_s <= slack_s && (left_s >= -slack_s || is_last(m));
         *rests = *landed && is_last(m);
@@ -177,11 +179,11 @@ static double go(struct product *p, struct motion *m, bool *landed, bool *rests)
             break;
         }
         way_mm += first_block(m)->length_mm;
-        handover_pass_block(m);
+        takt_handover_pass_block(m);
         begin_block(p, m, p->diagram.end_mm_s);
         p->time_s = -left_s;
     }
-    p->way_mm = *landed ? first_block(m)->length_mm : diagram_way(&p->diagram, p->time_s);
+    p->way_mm = *landed ? first_block(m)->length_mm : takt_diagram_way(&p->diagram, p->time_s);
     return way_mm + p->way_mm;
 }
 
@@ -193,7 +195,7 @@ static void point_at(const struct product *p, const struct motion *m, bool lande
         *at = b->curve.end;
     } else {
         *at = m->at;
-        curve_point(&b->curve, maths_clamp(p->way_mm, 0.0, b->length_mm) * b->scale, at);
+        takt_curve_point(&b->curve, maths_clamp(p->way_mm, 0.0, b->length_mm) * b->scale, at);
     }
 }
 
@@ -201,7 +203,7 @@ static void point_at(const struct product *p, const struct motion *m, bool lande
 static void leave_landed(struct product *p, struct motion *m)
 {
     if (p->landed) {
-        handover_pass_block(m);
+        takt_handover_pass_block(m);
         begin_block(p, m, p->diagram.end_mm_s);
         p->time_s = 0.0;
         p->landed = false;
@@ -228,7 +230,7 @@ static void stand(struct product *p, struct motion *m, struct cycle_record *reco
 {
     const struct point at = m->at;
 
-    handover_add_cycle(m, &at, 0.0, false, record);
+    takt_handover_add_cycle(m, &at, 0.0, false, record);
     record->override_percent = 100.0 * p->override.now;
 }
 
@@ -247,18 +249,19 @@ static void move(struct product *p, struct motion *m, const struct motion_operat
 
     point_at(p, m, landed, &at);
     limit_axes(p, m, &at);
-    handover_add_cycle(m, &at, way_mm / p->config.cycle_s * first_block(m)->scale, landed, record);
+    takt_handover_add_cycle(m, &at, way_mm / p->config.cycle_s * first_block(m)->scale, landed,
+                            record);
     record->override_percent = 100.0 * p->override.now;
     record->limiter = limiter;
     p->landed = landed && !rests;
     if (rests) {
         p->moves = false;
-        handover_end(m);
+        takt_handover_end(m);
     }
 }
 
-void product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
-                   struct cycle_record *record)
+void takt_product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
+                        struct cycle_record *record)
 {
     if (!p->moves && may_leave(m, wanted)) {
         leave_stop(p, m, wanted);

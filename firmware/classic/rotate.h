@@ -16,8 +16,8 @@ struct rotate {
 };
 
 /* quantum_rad: 0, or the last bit of the angle's word. */
-void rotate_begin(struct rotate *r, double a, double b, double quantum_rad);
+void takt_rotate_begin(struct rotate *r, double a, double b, double quantum_rad);
 /* One cycle. What quantisation leaves over is carried to the next. Returns the angle of the step. */
-double rotate_step(struct rotate *r, double angle_rad);
+double takt_rotate_step(struct rotate *r, double angle_rad);
 
 #endif

@@ -10,7 +10,7 @@ static double first_half(double u, double round)
     return u < round ? height * u * u / (2.0 * round) : height * (u - 0.5 * round);
 }
 
-double s_curve(double u, double round)
+double takt_s_curve(double u, double round)
 {
     return u <= 0.5 ? first_half(u, round) : 1.0 - first_half(1.0 - u, round);
 }
@@ -26,13 +26,13 @@ static double first_half_integral(double u, double round)
     return height * (0.5 * u * (u - round) + round * round / 6.0);
 }
 
-double s_curve_integral(double u, double round)
+double takt_s_curve_integral(double u, double round)
 {
     return u <= 0.5 ? first_half_integral(u, round) : u - 0.5 + first_half_integral(1.0 - u, round);
 }
 
 /* T = D/a + a/j where the slope a is reached, D >= a^2/j; else 2 sqrt(D/j). */
-double s_curve_time(double change, double slope, double bend, double *round)
+double takt_s_curve_time(double change, double slope, double bend, double *round)
 {
     *round = 0.5;
     if (change * bend < slope * slope) {

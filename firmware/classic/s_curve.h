@@ -5,12 +5,12 @@
 #define TAKT_CLASSIC_S_CURVE_H
 
 /* At u, 0 to 1; round: the part in which the slope rises, above 0 and at most 1/2. */
-double s_curve(double u, double round);
+double takt_s_curve(double u, double round);
 
 /* The integral from 0 to u. */
-double s_curve_integral(double u, double round);
+double takt_s_curve_integral(double u, double round);
 
 /* Shortest time for a change, >= 0, under limits of its slope and the slope's slope; *round of the curve that does it. */
-double s_curve_time(double change, double slope, double bend, double *round);
+double takt_s_curve_time(double change, double slope, double bend, double *round);
 
 #endif

@@ -9,9 +9,9 @@
 #include "shape/zv.h"
 
 /* Modified zero vibration: three impulses in three quarters of a period. */
-void shapers_mzv(const struct shape_mode *mode, double cycle_s, struct train *t);
+void takt_shapers_mzv(const struct shape_mode *mode, double cycle_s, struct train *t);
 
 /* Extra insensitive: three in a period; 5 % are left, also where the frequency is off. */
-void shapers_ei(const struct shape_mode *mode, double cycle_s, struct train *t);
+void takt_shapers_ei(const struct shape_mode *mode, double cycle_s, struct train *t);
 
 #endif

@@ -22,7 +22,7 @@ static bool is_exactly(const char *text, const char *name)
 
 static enum console_result answer(struct console *c, enum console_error error)
 {
-    console_answer(c, error);
+    takt_console_answer(c, error);
     return CONSOLE_ANSWERED;
 }
 
@@ -34,11 +34,11 @@ static bool waits_for_rest(struct console *c, const struct panel_snapshot *now)
 {
     const enum panel_state state = console_state(now);
 
-    if (!lines_are_read(c->config.lines))
+    if (!takt_lines_are_read(c->config.lines))
         return state == PANEL_STOPPING || state == PANEL_STARTING;
     if (now->value[REGISTER_FEED] != 0)
         return false;
-    lines_finish(c->config.lines);
+    takt_lines_finish(c->config.lines);
     return true;
 }
 
@@ -47,15 +47,15 @@ static enum console_result unlock(struct console *c, const struct panel_snapshot
     enum panel_refusal refusal = PANEL_REFUSAL_NONE;
 
     if (console_state(now) == PANEL_EMERGENCY) {
-        console_message(c, "emergency stop");
+        takt_console_message(c, "emergency stop");
         return answer(c, CONSOLE_LOCKED);
     }
     if (console_state(now) == PANEL_ALARM)
-        refusal = console_order(c, REGISTER_RESET, 1);
+        refusal = takt_console_order(c, REGISTER_RESET, 1);
     if (refusal != PANEL_REFUSAL_NONE)
-        return console_refuse(c, refusal);
+        return takt_console_refuse(c, refusal);
     if (c->is_locked)
-        console_message(c, "Caution: Unlocked");
+        takt_console_message(c, "Caution: Unlocked");
     c->is_locked = false;
     return answer(c, CONSOLE_OK);
 }
@@ -80,14 +80,14 @@ static enum console_result home(struct console *c, const struct panel_snapshot *
     if (waits_for_rest(c, now))
         return CONSOLE_WAITS;
     if (console_state(now) == PANEL_ALARM) {
-        refusal = console_order(c, REGISTER_RESET, 1);
-        return refusal == PANEL_REFUSAL_NONE ? CONSOLE_WAITS : console_refuse(c, refusal);
+        refusal = takt_console_order(c, REGISTER_RESET, 1);
+        return refusal == PANEL_REFUSAL_NONE ? CONSOLE_WAITS : takt_console_refuse(c, refusal);
     }
     if (console_state(now) != PANEL_IDLE || c->is_asleep)
         return answer(c, CONSOLE_NOT_IDLE);
-    refusal = console_order_two(c, REGISTER_MODE, PANEL_MODE_JOG, REGISTER_HOME, 1);
+    refusal = takt_console_order_two(c, REGISTER_MODE, PANEL_MODE_JOG, REGISTER_HOME, 1);
     if (refusal != PANEL_REFUSAL_NONE)
-        return console_refuse(c, refusal);
+        return takt_console_refuse(c, refusal);
     c->is_locked = false;
     c->homes = true;
     return CONSOLE_WAITS;
@@ -103,7 +103,7 @@ static enum console_result check(struct console *c, const struct panel_snapshot 
         return answer(c, CONSOLE_NOT_IDLE);
     c->is_checking = !c->is_checking;
     c->has_checked = false;
-    console_message(c, c->is_checking ? "Enabled" : "Disabled");
+    takt_console_message(c, c->is_checking ? "Enabled" : "Disabled");
     return answer(c, CONSOLE_OK);
 }
 
@@ -116,11 +116,11 @@ static enum console_result sleep(struct console *c, const struct panel_snapshot 
         return CONSOLE_WAITS;
     if (console_state(now) != PANEL_IDLE)
         return answer(c, CONSOLE_NOT_IDLE);
-    refusal = console_order(c, REGISTER_RESET, 1);
+    refusal = takt_console_order(c, REGISTER_RESET, 1);
     if (refusal != PANEL_REFUSAL_NONE)
-        return console_refuse(c, refusal);
+        return takt_console_refuse(c, refusal);
     c->is_asleep = true;
-    console_message(c, "Sleeping");
+    takt_console_message(c, "Sleeping");
     return answer(c, CONSOLE_OK);
 }
 
@@ -128,7 +128,7 @@ static enum console_result sleep(struct console *c, const struct panel_snapshot 
 static enum console_result password(struct console *c, const char *digits)
 {
     double value;
-    const size_t length = decimal_read(digits, characters_length(digits), &value);
+    const size_t length = takt_decimal_read(digits, characters_length(digits), &value);
     enum panel_refusal refusal;
 
     if (length == 0 || digits[length] != '\0' || value > UINT32_MAX)
@@ -175,7 +175,7 @@ static enum console_result restore(struct console *c, const struct panel_snapsho
         return answer(c, CONSOLE_NOT_IDLE);
     write_zeros(c->config.machine, order.mdi);
     refusal = c->config.port.order(c->config.port.context, &order);
-    return refusal == PANEL_REFUSAL_NONE ? answer(c, CONSOLE_OK) : console_refuse(c, refusal);
+    return refusal == PANEL_REFUSAL_NONE ? answer(c, CONSOLE_OK) : takt_console_refuse(c, refusal);
 }
 
 /* Lines at start are none: those that are to be empty are. */
@@ -188,15 +188,15 @@ static enum console_error startup_line(const char *text)
 
 static void help(struct console *c)
 {
-    reply_text(&c->reply,
-               "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]");
-    console_line_end(c);
+    takt_reply_text(&c->reply,
+                    "[HLP:$$ $# $G $I $N $x=val $Nx=line $J=line $SLP $C $X $H ~ ! ? ctrl-x]");
+    takt_console_line_end(c);
 }
 
 static void report_startup(struct console *c)
 {
-    reply_text(&c->reply, "$N0=\r\n$N1=");
-    console_line_end(c);
+    takt_reply_text(&c->reply, "$N0=\r\n$N1=");
+    takt_console_line_end(c);
 }
 
 /* False: it is no report. */
@@ -205,13 +205,13 @@ static bool report(struct console *c, const char *text, const struct panel_snaps
     if (is_exactly(text, ""))
         help(c);
     else if (is_exactly(text, "$"))
-        console_report_settings(c);
+        takt_console_report_settings(c);
     else if (is_exactly(text, "#"))
-        console_report_offsets(c);
+        takt_console_report_offsets(c);
     else if (is_exactly(text, "G"))
-        console_report_modes(c, now);
+        takt_console_report_modes(c, now);
     else if (is_exactly(text, "I") || is_exactly(text, "I+"))
-        console_report_build(c, text[1] == '+');
+        takt_console_report_build(c, text[1] == '+');
     else if (is_exactly(text, "N"))
         report_startup(c);
     else
@@ -219,13 +219,13 @@ static bool report(struct console *c, const char *text, const struct panel_snaps
     return true;
 }
 
-enum console_result console_command(struct console *c, const char *text,
-                                    const struct panel_snapshot *now)
+enum console_result takt_console_command(struct console *c, const char *text,
+                                         const struct panel_snapshot *now)
 {
     if (report(c, text, now))
         return answer(c, CONSOLE_OK);
     if (is_command(text, "J="))
-        return console_jog(c, text + 2, now);
+        return takt_console_jog(c, text + 2, now);
     if (is_exactly(text, "X"))
         return unlock(c, now);
     if (is_exactly(text, "H"))
@@ -240,5 +240,5 @@ enum console_result console_command(struct console *c, const char *text,
         return password(c, text + 3);
     if (is_command(text, "N"))
         return answer(c, startup_line(text));
-    return answer(c, console_set(c, text));
+    return answer(c, takt_console_set(c, text));
 }

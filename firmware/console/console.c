@@ -8,7 +8,7 @@
 /* A snapshot may be a cycle older than the end of a program. */
 #define SETTLING_CYCLES 2
 
-void console_init(struct console *c, const struct console_config *config)
+void takt_console_init(struct console *c, const struct console_config *config)
 {
     memset(c, 0, sizeof *c);
     c->config = *config;
@@ -17,90 +17,90 @@ void console_init(struct console *c, const struct console_config *config)
     c->mask = CONSOLE_MASK_MACHINE | CONSOLE_MASK_BUFFER;
 }
 
-bool console_has_room(const struct console *c)
+bool takt_console_has_room(const struct console *c)
 {
-    return lines_room(c->config.lines) > 0;
+    return takt_lines_room(c->config.lines) > 0;
 }
 
-bool console_is_waiting(const struct console *c)
+bool takt_console_is_waiting(const struct console *c)
 {
     char text[LINES_LENGTH_MAX + 1];
 
     return c->pending > 0 || c->resets || c->resumes || c->is_settling ||
-           lines_are_read(c->config.lines) || lines_look(c->config.lines, text) != 0;
+           takt_lines_are_read(c->config.lines) || takt_lines_look(c->config.lines, text) != 0;
 }
 
 /* ---- replies ---- */
 
-void console_line_end(struct console *c)
+void takt_console_line_end(struct console *c)
 {
-    reply_text(&c->reply, "\r\n");
-    reply_send(&c->reply);
+    takt_reply_text(&c->reply, "\r\n");
+    takt_reply_send(&c->reply);
 }
 
-void console_answer(struct console *c, enum console_error error)
+void takt_console_answer(struct console *c, enum console_error error)
 {
     if (error == CONSOLE_OK) {
-        reply_text(&c->reply, "ok");
+        takt_reply_text(&c->reply, "ok");
     } else {
-        reply_text(&c->reply, "error:");
-        reply_counts(&c->reply, (int64_t)error, 0);
+        takt_reply_text(&c->reply, "error:");
+        takt_reply_counts(&c->reply, (int64_t)error, 0);
     }
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
-void console_message(struct console *c, const char *text)
+void takt_console_message(struct console *c, const char *text)
 {
-    reply_text(&c->reply, "[MSG:");
-    reply_text(&c->reply, text);
-    reply_text(&c->reply, "]");
-    console_line_end(c);
+    takt_reply_text(&c->reply, "[MSG:");
+    takt_reply_text(&c->reply, text);
+    takt_reply_text(&c->reply, "]");
+    takt_console_line_end(c);
 }
 
-void console_welcome(struct console *c)
+void takt_console_welcome(struct console *c)
 {
-    reply_text(&c->reply, "\r\nGrbl 1.1h ['$' for help]");
-    console_line_end(c);
+    takt_reply_text(&c->reply, "\r\nGrbl 1.1h ['$' for help]");
+    takt_console_line_end(c);
     if (c->is_locked)
-        console_message(c, "'$H'|'$X' to unlock");
+        takt_console_message(c, "'$H'|'$X' to unlock");
 }
 
 static void raise_alarm(struct console *c, enum console_alarm alarm, const char *text)
 {
-    reply_text(&c->reply, "ALARM:");
-    reply_counts(&c->reply, (int64_t)alarm, 0);
-    console_line_end(c);
+    takt_reply_text(&c->reply, "ALARM:");
+    takt_reply_counts(&c->reply, (int64_t)alarm, 0);
+    takt_console_line_end(c);
     if (text[0] != '\0')
-        console_message(c, text);
+        takt_console_message(c, text);
     c->is_locked = true;
 }
 
 /* ---- orders ---- */
 
-enum panel_refusal console_order(struct console *c, enum panel_id id, int64_t value)
+enum panel_refusal takt_console_order(struct console *c, enum panel_id id, int64_t value)
 {
     const struct panel_order order = {.count = 1, .item = {{id, value}}};
 
     return c->config.port.order(c->config.port.context, &order);
 }
 
-enum panel_refusal console_order_two(struct console *c, enum panel_id id, int64_t value,
-                                     enum panel_id second, int64_t second_value)
+enum panel_refusal takt_console_order_two(struct console *c, enum panel_id id, int64_t value,
+                                          enum panel_id second, int64_t second_value)
 {
     const struct panel_order order = {.count = 2, .item = {{id, value}, {second, second_value}}};
 
     return c->config.port.order(c->config.port.context, &order);
 }
 
-enum console_result console_refuse(struct console *c, enum panel_refusal refusal)
+enum console_result takt_console_refuse(struct console *c, enum panel_refusal refusal)
 {
     if (refusal == PANEL_REFUSAL_BUSY)
         return CONSOLE_WAITS;
     if (refusal == PANEL_REFUSAL_CONTROL)
-        console_message(c, "another panel has control");
+        takt_console_message(c, "another panel has control");
     else if (refusal == PANEL_REFUSAL_LOCKED)
-        console_message(c, "the password first: $PW=...");
-    console_answer(c, CONSOLE_LOCKED);
+        takt_console_message(c, "the password first: $PW=...");
+    takt_console_answer(c, CONSOLE_LOCKED);
     return CONSOLE_ANSWERED;
 }
 
@@ -128,11 +128,11 @@ static void tell_why(struct console *c)
     struct diagnostic why;
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    lines_take_why(c->config.lines, &why);
+    takt_lines_take_why(c->config.lines, &why);
     if (why.code == TAKT_OK)
         return;
-    (void)diagnostic_text(&why, text);
-    console_message(c, text);
+    (void)takt_diagnostic_text(&why, text);
+    takt_console_message(c, text);
 }
 
 /* A sender that has reset counts no more on answers to what it sent before. */
@@ -141,15 +141,15 @@ static void collect(struct console *c)
     char text[LINES_LENGTH_MAX + 1];
     uint8_t answer;
 
-    while (lines_collect(c->config.lines, text, &answer)) {
+    while (takt_lines_collect(c->config.lines, text, &answer)) {
         c->pending--;
         if (c->resets)
             continue;
         if (answer != CONSOLE_OK)
             tell_why(c);
         else if (is_probing(text))
-            console_report_probe(c);
-        console_answer(c, (enum console_error)answer);
+            takt_console_report_probe(c);
+        takt_console_answer(c, (enum console_error)answer);
     }
 }
 
@@ -192,7 +192,7 @@ static enum console_result answer_here(struct console *c, enum console_error err
 {
     if (c->pending > 0)
         return CONSOLE_WAITS;
-    console_answer(c, error);
+    takt_console_answer(c, error);
     return CONSOLE_ANSWERED;
 }
 
@@ -204,14 +204,14 @@ static enum console_result check_line(struct console *c, const char *text)
         return CONSOLE_WAITS;
     error = c->config.port.check(c->config.port.context, text, !c->has_checked);
     c->has_checked = true;
-    return answer_here(c, error == TAKT_OK ? CONSOLE_OK : console_error_of(error));
+    return answer_here(c, error == TAKT_OK ? CONSOLE_OK : takt_console_error_of(error));
 }
 
 /* Without a program that reads it one is started. PANEL_REFUSAL_NONE: the line may be released. */
 static enum panel_refusal prepare_program(struct console *c, enum panel_state state)
 {
-    if (lines_are_read(c->config.lines))
-        return lines_are_finished(c->config.lines) ? PANEL_REFUSAL_BUSY : PANEL_REFUSAL_NONE;
+    if (takt_lines_are_read(c->config.lines))
+        return takt_lines_are_finished(c->config.lines) ? PANEL_REFUSAL_BUSY : PANEL_REFUSAL_NONE;
     return state == PANEL_IDLE ? start_program(c) : PANEL_REFUSAL_BUSY;
 }
 
@@ -219,7 +219,7 @@ static enum panel_refusal prepare_program(struct console *c, enum panel_state st
 static enum console_result program_line(struct console *c, const char *text, enum panel_state state,
                                         bool *released)
 {
-    const bool active = lines_are_read(c->config.lines);
+    const bool active = takt_lines_are_read(c->config.lines);
     enum panel_refusal refusal;
 
     if (!active && characters_are_blank(text))
@@ -232,7 +232,7 @@ static enum console_result program_line(struct console *c, const char *text, enu
     if (refusal == PANEL_REFUSAL_STATE)
         refusal = PANEL_REFUSAL_BUSY;
     if (refusal != PANEL_REFUSAL_NONE)
-        return c->pending > 0 ? CONSOLE_WAITS : console_refuse(c, refusal);
+        return c->pending > 0 ? CONSOLE_WAITS : takt_console_refuse(c, refusal);
     *released = true;
     return CONSOLE_WAITS;
 }
@@ -244,10 +244,10 @@ static enum console_result own_line(struct console *c, uint8_t mark, const char 
     if (c->pending > 0)
         return CONSOLE_WAITS;
     if (mark == LINES_LONG) {
-        console_answer(c, CONSOLE_LINE_TOO_LONG);
+        takt_console_answer(c, CONSOLE_LINE_TOO_LONG);
         return CONSOLE_ANSWERED;
     }
-    return console_command(c, command_of(text), now);
+    return takt_console_command(c, command_of(text), now);
 }
 
 /* One line further. False: it waits, or there is none. */
@@ -255,7 +255,7 @@ static bool take_line(struct console *c, const struct panel_snapshot *now)
 {
     struct lines *l = c->config.lines;
     char text[LINES_LENGTH_MAX + 1];
-    const uint8_t mark = lines_look(l, text);
+    const uint8_t mark = takt_lines_look(l, text);
     bool released = false;
     enum console_result result;
 
@@ -269,9 +269,9 @@ static bool take_line(struct console *c, const struct panel_snapshot *now)
         result = program_line(c, text, console_state(now), &released);
     if (released) {
         c->pending++;
-        lines_release(l);
+        takt_lines_release(l);
     } else if (result == CONSOLE_ANSWERED) {
-        lines_skip(l);
+        takt_lines_skip(l);
     }
     return released || result == CONSOLE_ANSWERED;
 }
@@ -281,17 +281,17 @@ static bool take_line(struct console *c, const struct panel_snapshot *now)
 /* The program of the lines has ended; those it has not read are the console's again. Given up or failed, nothing that was to follow goes on by itself. */
 static void follow_program(struct console *c, const struct panel_snapshot *now)
 {
-    const bool active = lines_are_read(c->config.lines);
-    const enum takt_error cause = lines_get_cause(c->config.lines);
+    const bool active = takt_lines_are_read(c->config.lines);
+    const enum takt_error cause = takt_lines_get_cause(c->config.lines);
 
     if (c->was_active && !active) {
         collect(c);
-        lines_take_back(c->config.lines);
+        takt_lines_take_back(c->config.lines);
         c->pending = 0;
         c->is_settling = true;
         c->settled = now->value[REGISTER_CYCLES] + SETTLING_CYCLES;
         if (cause != TAKT_OK && !c->resets)
-            raise_alarm(c, console_alarm_of(cause), now->alarm_text);
+            raise_alarm(c, takt_console_alarm_of(cause), now->alarm_text);
         c->was_alarm = c->was_alarm || cause != TAKT_OK;
     }
     c->was_active = active;
@@ -320,13 +320,13 @@ static void follow_alarm(struct console *c, const struct panel_snapshot *now)
 /* All has come to rest. */
 static void follow_reset(struct console *c, const struct panel_snapshot *now)
 {
-    if (!c->resets || lines_are_read(c->config.lines) || console_state(now) == PANEL_STOPPING)
+    if (!c->resets || takt_lines_are_read(c->config.lines) || console_state(now) == PANEL_STOPPING)
         return;
     c->resets = c->homes = c->resumes = c->is_asleep = c->is_checking = c->is_door = false;
     c->pending = 0;
-    lines_clear(c->config.lines);
+    takt_lines_clear(c->config.lines);
     c->is_locked = console_state(now) == PANEL_ALARM || console_state(now) == PANEL_EMERGENCY;
-    console_welcome(c);
+    takt_console_welcome(c);
 }
 
 /* A spindle that was stopped in a hold turns before the axes do. */
@@ -338,7 +338,7 @@ static void follow_resume(struct console *c, const struct panel_snapshot *now)
         return;
     c->resumes = false;
     if (console_state(now) == PANEL_HELD)
-        (void)console_order(c, REGISTER_RESUME, 1);
+        (void)takt_console_order(c, REGISTER_RESUME, 1);
 }
 
 static void follow_jog(struct console *c, const struct panel_snapshot *now)
@@ -353,7 +353,7 @@ static bool has_settled(struct console *c, const struct panel_snapshot *now)
     return !c->is_settling;
 }
 
-void console_step(struct console *c)
+void takt_console_step(struct console *c)
 {
     struct panel_snapshot now;
 
@@ -384,30 +384,30 @@ static uint8_t line_byte(struct console *c, uint8_t byte)
     return byte == '\r' ? (uint8_t)'\n' : byte;
 }
 
-void console_take(struct console *c, uint8_t byte)
+void takt_console_take(struct console *c, uint8_t byte)
 {
-    if (console_take_realtime(c, byte))
+    if (takt_console_take_realtime(c, byte))
         return;
     byte = line_byte(c, byte);
     if (byte != 0)
-        (void)lines_put(c->config.lines, byte);
+        (void)takt_lines_put(c->config.lines, byte);
 }
 
-void console_enter(struct console *c)
+void takt_console_enter(struct console *c)
 {
     c->has_return = false;
-    if (lines_are_read(c->config.lines)) {
-        (void)console_take_realtime(c, 0x18);
+    if (takt_lines_are_read(c->config.lines)) {
+        (void)takt_console_take_realtime(c, 0x18);
         return;
     }
     c->pending = 0;
-    lines_clear(c->config.lines);
-    console_welcome(c);
+    takt_lines_clear(c->config.lines);
+    takt_console_welcome(c);
 }
 
-void console_leave(struct console *c)
+void takt_console_leave(struct console *c)
 {
     if (c->jogs)
-        (void)console_order(c, REGISTER_FEED_HOLD, 1);
+        (void)takt_console_order(c, REGISTER_FEED_HOLD, 1);
     c->jogs = false;
 }

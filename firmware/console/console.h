@@ -77,22 +77,22 @@ struct console {
     bool in_inches;   /* $13 */
 };
 
-void console_init(struct console *c, const struct console_config *config);
+void takt_console_init(struct console *c, const struct console_config *config);
 
 /* A sender has come: what the last one left is dropped, and it is welcomed. */
-void console_enter(struct console *c);
+void takt_console_enter(struct console *c);
 
 /* The sender has gone: what it jogs stops at once. */
-void console_leave(struct console *c);
+void takt_console_leave(struct console *c);
 
 /* Another byte of text finds room; real-time bytes always do. */
-bool console_has_room(const struct console *c);
-void console_take(struct console *c, uint8_t byte);
+bool takt_console_has_room(const struct console *c);
+void takt_console_take(struct console *c, uint8_t byte);
 
 /* What can be done is done: answers, lines, alarms. As often as there is time. */
-void console_step(struct console *c);
+void takt_console_step(struct console *c);
 
 /* It waits for something: step is wanted again soon. */
-bool console_is_waiting(const struct console *c);
+bool takt_console_is_waiting(const struct console *c);
 
 #endif

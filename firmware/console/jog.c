@@ -90,7 +90,7 @@ static bool read_number(const char **text, double *value)
     size_t length;
 
     *text += **text == '-' || **text == '+';
-    length = decimal_read(*text, characters_length(*text), value);
+    length = takt_decimal_read(*text, characters_length(*text), value);
     *text += length;
     *value = negative ? -*value : *value;
     return length > 0;
@@ -145,7 +145,7 @@ static bool is_within(const struct machine_axis *axis, double place)
 static char *write_word(char *text, char letter, double value)
 {
     *text++ = letter;
-    return text + decimal_write(text, value, PLACES);
+    return text + takt_decimal_write(text, value, PLACES);
 }
 
 /* "G21 G90 G94 G53 G1 X1.0000F600.0000". False: an axis would leave its travel. */
@@ -172,7 +172,7 @@ static bool write_line(const struct jog *j, const struct machine *machine,
 
 static enum console_result refuse(struct console *c, enum console_error error)
 {
-    console_answer(c, error);
+    takt_console_answer(c, error);
     return CONSOLE_ANSWERED;
 }
 
@@ -181,15 +181,15 @@ static bool follows(struct console *c, const struct panel_snapshot *now)
 {
     const enum panel_state state = console_state(now);
 
-    if (lines_are_read(c->config.lines) && now->value[REGISTER_FEED] == 0) {
-        lines_finish(c->config.lines);
+    if (takt_lines_are_read(c->config.lines) && now->value[REGISTER_FEED] == 0) {
+        takt_lines_finish(c->config.lines);
         return true;
     }
     return state == PANEL_JOGGING || state == PANEL_STOPPING || state == PANEL_STARTING;
 }
 
-enum console_result console_jog(struct console *c, const char *text,
-                                const struct panel_snapshot *now)
+enum console_result takt_console_jog(struct console *c, const char *text,
+                                     const struct panel_snapshot *now)
 {
     const uint32_t modes = now->value[REGISTER_MODES];
     struct jog jog = {.inches = (modes & MODES_INCHES) != 0,
@@ -214,5 +214,5 @@ enum console_result console_jog(struct console *c, const char *text,
         return refuse(c, CONSOLE_BEYOND_TRAVEL);
     refusal = c->config.port.order(c->config.port.context, &order);
     c->jogs = refusal == PANEL_REFUSAL_NONE;
-    return c->jogs ? refuse(c, CONSOLE_OK) : console_refuse(c, refusal);
+    return c->jogs ? refuse(c, CONSOLE_OK) : takt_console_refuse(c, refusal);
 }

@@ -28,7 +28,7 @@ static void set_flag(struct lines_flag *flag, bool value)
     __atomic_store_n(&flag->value, value, __ATOMIC_RELEASE);
 }
 
-void lines_init(struct lines *l, uint8_t *byte, uint32_t size)
+void takt_lines_init(struct lines *l, uint8_t *byte, uint32_t size)
 {
     assert((size & (size - 1)) == 0);
     memset(l, 0, sizeof *l);
@@ -74,12 +74,12 @@ static uint32_t room_of(uint32_t bytes)
     return bytes > 0 ? (bytes - 1U) / EMPTY_LINE : 0;
 }
 
-uint32_t lines_room(const struct lines *l)
+uint32_t takt_lines_room(const struct lines *l)
 {
     return room_of(free_bytes(l));
 }
 
-uint32_t lines_capacity(const struct lines *l)
+uint32_t takt_lines_capacity(const struct lines *l)
 {
     return room_of(l->size);
 }
@@ -108,7 +108,7 @@ static bool put_character(struct lines *l, uint8_t byte)
     return has_room;
 }
 
-bool lines_put(struct lines *l, uint8_t byte)
+bool takt_lines_put(struct lines *l, uint8_t byte)
 {
     if (l->at == l->written) {
         if (free_bytes(l) <= EMPTY_LINE)
@@ -121,12 +121,12 @@ bool lines_put(struct lines *l, uint8_t byte)
     return true;
 }
 
-void lines_spoil(struct lines *l)
+void takt_lines_spoil(struct lines *l)
 {
     l->is_long = true;
 }
 
-void lines_clear(struct lines *l)
+void takt_lines_clear(struct lines *l)
 {
     l->written = l->at = l->collected = 0;
     l->is_long = false;
@@ -136,7 +136,7 @@ void lines_clear(struct lines *l)
     set_flag(&l->has_why, false);
 }
 
-uint8_t lines_look(const struct lines *l, char *text)
+uint8_t takt_lines_look(const struct lines *l, char *text)
 {
     const uint32_t at = get_place(&l->released);
 
@@ -146,26 +146,26 @@ uint8_t lines_look(const struct lines *l, char *text)
     return *place(l, at);
 }
 
-void lines_release(struct lines *l)
+void takt_lines_release(struct lines *l)
 {
     set_place(&l->released, end_of(l, get_place(&l->released)));
 }
 
 /* A program passes over it; without one there is nobody else who would. */
-void lines_skip(struct lines *l)
+void takt_lines_skip(struct lines *l)
 {
     *place(l, get_place(&l->released)) = LINES_OWN;
-    lines_release(l);
+    takt_lines_release(l);
     if (!get_flag(&l->active))
         set_place(&l->read, get_place(&l->released));
 }
 
-void lines_take_back(struct lines *l)
+void takt_lines_take_back(struct lines *l)
 {
     set_place(&l->released, get_place(&l->read));
 }
 
-bool lines_collect(struct lines *l, char *text, uint8_t *answer)
+bool takt_lines_collect(struct lines *l, char *text, uint8_t *answer)
 {
     while (l->collected != get_place(&l->read)) {
         *answer = *place(l, l->collected);
@@ -178,7 +178,7 @@ bool lines_collect(struct lines *l, char *text, uint8_t *answer)
     return false;
 }
 
-void lines_take_why(struct lines *l, struct diagnostic *why)
+void takt_lines_take_why(struct lines *l, struct diagnostic *why)
 {
     why->code = TAKT_OK;
     if (!get_flag(&l->has_why) || l->why_at != l->last)
@@ -187,22 +187,22 @@ void lines_take_why(struct lines *l, struct diagnostic *why)
     set_flag(&l->has_why, false);
 }
 
-bool lines_are_read(const struct lines *l)
+bool takt_lines_are_read(const struct lines *l)
 {
     return get_flag(&l->active);
 }
 
-void lines_finish(struct lines *l)
+void takt_lines_finish(struct lines *l)
 {
     set_flag(&l->ends, true);
 }
 
-bool lines_are_finished(const struct lines *l)
+bool takt_lines_are_finished(const struct lines *l)
 {
     return get_flag(&l->ends);
 }
 
-enum takt_error lines_get_cause(const struct lines *l)
+enum takt_error takt_lines_get_cause(const struct lines *l)
 {
     return (enum takt_error)(int32_t)get_place(&l->cause);
 }
@@ -249,7 +249,7 @@ static long read_line(void *context, char *buffer, size_t size)
     return (long)count;
 }
 
-void lines_open(struct lines *l, struct source *source)
+void takt_lines_open(struct lines *l, struct source *source)
 {
     l->is_handed = false;
     set_flag(&l->ends, false);
@@ -258,7 +258,7 @@ void lines_open(struct lines *l, struct source *source)
     *source = (struct source){.read = read_line, .context = l};
 }
 
-void lines_refuse(struct lines *l, uint8_t answer, const struct diagnostic *why)
+void takt_lines_refuse(struct lines *l, uint8_t answer, const struct diagnostic *why)
 {
     if (!l->is_handed || l->answer != 0)
         return;
@@ -270,7 +270,7 @@ void lines_refuse(struct lines *l, uint8_t answer, const struct diagnostic *why)
     set_flag(&l->has_why, true);
 }
 
-void lines_end(struct lines *l, uint8_t answer, enum takt_error cause)
+void takt_lines_end(struct lines *l, uint8_t answer, enum takt_error cause)
 {
     if (l->is_handed) {
         l->answer = l->answer != 0 ? l->answer : answer;

@@ -23,7 +23,7 @@
 /* Longest line without its end: that of a program. */
 #define LINES_LENGTH_MAX 256
 
-/* Of a line that has been done: the number of its error, 0: none. Else: */
+/* Mark of a line that has been done: the number of its error, 0: none. Else: */
 enum lines_mark {
     LINES_NEW = 0xff,  /* not done yet */
     LINES_OWN = 0xfe,  /* the console has answered it */
@@ -64,48 +64,48 @@ struct lines {
     struct lines_place cause; /* enum takt_error: why the program failed; TAKT_OK: it did not */
 };
 
-void lines_init(struct lines *l, uint8_t *byte, uint32_t size);
+void takt_lines_init(struct lines *l, uint8_t *byte, uint32_t size);
 
 /* ---- console ---- */
 
 /* Bytes of text that find room; each of its lines may be as short as its end. */
-uint32_t lines_room(const struct lines *l);
+uint32_t takt_lines_room(const struct lines *l);
 /* The same while nothing is there: what a sender may count on. */
-uint32_t lines_capacity(const struct lines *l);
+uint32_t takt_lines_capacity(const struct lines *l);
 /* A byte of a line, which ends with '\n'. False: no room, it is lost. */
-bool lines_put(struct lines *l, uint8_t byte);
+bool takt_lines_put(struct lines *l, uint8_t byte);
 /* Bytes have been lost before the next one: their line is refused as one that is too long. */
-void lines_spoil(struct lines *l);
+void takt_lines_spoil(struct lines *l);
 /* Drops everything; no program reads. */
-void lines_clear(struct lines *l);
+void takt_lines_clear(struct lines *l);
 
 /* The first line not released, without its end, into text[LINES_LENGTH_MAX + 1]; its mark. 0: there is none. */
-uint8_t lines_look(const struct lines *l, char *text);
-void lines_release(struct lines *l);
+uint8_t takt_lines_look(const struct lines *l, char *text);
+void takt_lines_release(struct lines *l);
 /* The console has answered that line itself. */
-void lines_skip(struct lines *l);
+void takt_lines_skip(struct lines *l);
 /* Lines that are released and that no program has read are not; no program reads. */
-void lines_take_back(struct lines *l);
+void takt_lines_take_back(struct lines *l);
 /* The next line that is done: its text as above and its answer. False: none is. */
-bool lines_collect(struct lines *l, char *text, uint8_t *answer);
+bool takt_lines_collect(struct lines *l, char *text, uint8_t *answer);
 /* Why the line collected last has been refused; TAKT_OK: not known. */
-void lines_take_why(struct lines *l, struct diagnostic *why);
+void takt_lines_take_why(struct lines *l, struct diagnostic *why);
 
 /* A program reads the lines. */
-bool lines_are_read(const struct lines *l);
+bool takt_lines_are_read(const struct lines *l);
 /* No more are released: the program ends when it has read those that are. */
-void lines_finish(struct lines *l);
-bool lines_are_finished(const struct lines *l);
+void takt_lines_finish(struct lines *l);
+bool takt_lines_are_finished(const struct lines *l);
 /* Why the last program has failed; TAKT_OK: it has not. */
-enum takt_error lines_get_cause(const struct lines *l);
+enum takt_error takt_lines_get_cause(const struct lines *l);
 
 /* ---- program ---- */
 
 /* A source of the lines that are released. */
-void lines_open(struct lines *l, struct source *source);
+void takt_lines_open(struct lines *l, struct source *source);
 /* The line handed out last is not done. */
-void lines_refuse(struct lines *l, uint8_t answer, const struct diagnostic *why);
+void takt_lines_refuse(struct lines *l, uint8_t answer, const struct diagnostic *why);
 /* Nothing reads any more; the line handed out last has this answer, if it has none yet. */
-void lines_end(struct lines *l, uint8_t answer, enum takt_error cause);
+void takt_lines_end(struct lines *l, uint8_t answer, enum takt_error cause);
 
 #endif

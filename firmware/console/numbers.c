@@ -37,7 +37,7 @@ static const struct {
     {TAKT_ERROR_TOOL_ABSENT, CONSOLE_NO_TOOL},
 };
 
-enum console_error console_error_of(enum takt_error error)
+enum console_error takt_console_error_of(enum takt_error error)
 {
     for (size_t i = 0; i < sizeof errors / sizeof errors[0]; i++) {
         if (errors[i].error == error)
@@ -46,7 +46,7 @@ enum console_error console_error_of(enum takt_error error)
     return CONSOLE_UNSUPPORTED;
 }
 
-enum console_alarm console_alarm_of(enum takt_error error)
+enum console_alarm takt_console_alarm_of(enum takt_error error)
 {
     if (error == TAKT_ERROR_TRAVEL_EXCEEDED)
         return CONSOLE_ALARM_TRAVEL;

@@ -49,10 +49,10 @@ enum console_alarm {
     CONSOLE_ALARM_DRIVE = 17
 };
 
-/* Of a line of a program that is refused. */
-enum console_error console_error_of(enum takt_error error);
+/* Error of a line of a program that is refused. */
+enum console_error takt_console_error_of(enum takt_error error);
 
 /* Why a program has failed. */
-enum console_alarm console_alarm_of(enum takt_error error);
+enum console_alarm takt_console_alarm_of(enum takt_error error);
 
 #endif

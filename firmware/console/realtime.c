@@ -32,7 +32,7 @@ enum realtime {
 /* What is known of the spindle is older than what it is told by less than this, and a snapshot by one more. */
 #define FEEDBACK_CYCLES 5
 
-/* What the bytes of a group of five do: to 100 %, and so many counts more. */
+/* What the bytes of a group of five do: set 100 %, or add this many counts. */
 static const int steps[] = {0, 100, -100, 10, -10};
 
 static void look(const struct console *c, struct panel_snapshot *now)
@@ -42,10 +42,10 @@ static void look(const struct console *c, struct panel_snapshot *now)
 
 static void change_override(struct console *c, enum panel_id id, unsigned step)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     struct panel_snapshot now;
     int64_t value = WHOLE;
-    int64_t least = panel_least(row);
+    int64_t least = takt_panel_least(row);
 
     look(c, &now);
     if (step > 0)
@@ -56,14 +56,14 @@ static void change_override(struct console *c, enum panel_id id, unsigned step)
         value = least;
     if (value > (int64_t)panel_most(row))
         value = (int64_t)panel_most(row);
-    (void)console_order(c, id, value);
+    (void)takt_console_order(c, id, value);
 }
 
 static void set_rapid(struct console *c, unsigned step)
 {
     static const int64_t values[] = {1000, 500, 250};
 
-    (void)console_order(c, REGISTER_RAPID_OVERRIDE, values[step]);
+    (void)takt_console_order(c, REGISTER_RAPID_OVERRIDE, values[step]);
 }
 
 static void toggle(struct console *c, enum panel_id id)
@@ -71,16 +71,16 @@ static void toggle(struct console *c, enum panel_id id)
     struct panel_snapshot now;
 
     look(c, &now);
-    (void)console_order(c, id, now.value[id] == 0);
+    (void)takt_console_order(c, id, now.value[id] == 0);
 }
 
 static void hold(struct console *c)
 {
     c->resumes = false;
-    (void)console_order(c, REGISTER_FEED_HOLD, 1);
+    (void)takt_console_order(c, REGISTER_FEED_HOLD, 1);
 }
 
-/* What a held spindle has to do first is done by console_step. */
+/* What a held spindle has to do first is done by takt_console_step. */
 static void resume(struct console *c)
 {
     struct panel_snapshot now;
@@ -89,11 +89,11 @@ static void resume(struct console *c)
     if (console_state(&now) != PANEL_HELD)
         return;
     if (now.value[REGISTER_ALARM] != PANEL_ALARM_NONE)
-        (void)console_order(c, REGISTER_ACKNOWLEDGE, 1);
+        (void)takt_console_order(c, REGISTER_ACKNOWLEDGE, 1);
     if (now.value[REGISTER_SPINDLE_STOP] == 0)
-        (void)console_order(c, REGISTER_RESUME, 1);
+        (void)takt_console_order(c, REGISTER_RESUME, 1);
     else
-        c->resumes = console_order(c, REGISTER_SPINDLE_STOP, 0) == PANEL_REFUSAL_NONE;
+        c->resumes = takt_console_order(c, REGISTER_SPINDLE_STOP, 0) == PANEL_REFUSAL_NONE;
     c->turned = now.value[REGISTER_CYCLES] + FEEDBACK_CYCLES;
 }
 
@@ -102,7 +102,7 @@ static void open_door(struct console *c)
 {
     hold(c);
     c->is_door = true;
-    (void)console_order(c, REGISTER_SPINDLE_STOP, 1);
+    (void)takt_console_order(c, REGISTER_SPINDLE_STOP, 1);
 }
 
 static void cancel_jog(struct console *c)
@@ -130,11 +130,11 @@ static void reset(struct console *c)
         refusal = c->config.port.order(c->config.port.context, &order);
     c->resets = true;
     c->has_return = false;
-    if (refusal == PANEL_REFUSAL_NONE || !lines_are_read(c->config.lines))
+    if (refusal == PANEL_REFUSAL_NONE || !takt_lines_are_read(c->config.lines))
         return;
     c->resets = false;
     hold(c);
-    console_message(c, "not reset: another panel has control");
+    takt_console_message(c, "not reset: another panel has control");
 }
 
 static void report_modes(struct console *c)
@@ -142,7 +142,7 @@ static void report_modes(struct console *c)
     struct panel_snapshot now;
 
     look(c, &now);
-    console_report_modes(c, &now);
+    takt_console_report_modes(c, &now);
 }
 
 /* Bytes of overrides, in groups. False: it is none. */
@@ -169,7 +169,7 @@ static bool take_override(struct console *c, uint8_t byte)
 static bool take_known(struct console *c, uint8_t byte)
 {
     if (byte == '?' || byte == REALTIME_STATUS_HAL || byte == REALTIME_STATUS_ALL)
-        console_report_status(c);
+        takt_console_report_status(c);
     else if (byte == '!' || byte == REALTIME_HOLD_HAL)
         hold(c);
     else if (byte == '~' || byte == REALTIME_START_HAL)
@@ -186,7 +186,7 @@ static bool take_known(struct console *c, uint8_t byte)
 }
 
 /* Above ASCII there is no text: what is not known is dropped. */
-bool console_take_realtime(struct console *c, uint8_t byte)
+bool takt_console_take_realtime(struct console *c, uint8_t byte)
 {
     if (take_known(c, byte) || take_override(c, byte))
         return true;

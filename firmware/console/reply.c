@@ -2,10 +2,10 @@
 
 #include "base/decimal.h"
 
-/* Of 64 bits, with sign and point. */
+/* Characters of a number of 64 bits, with sign and point. */
 #define DIGITS_MAX 24
 
-void reply_send(struct reply *r)
+void takt_reply_send(struct reply *r)
 {
     if (r->length > 0)
         r->write(r->context, r->text, r->length);
@@ -15,17 +15,17 @@ void reply_send(struct reply *r)
 static void put(struct reply *r, char c)
 {
     if (r->length == sizeof r->text)
-        reply_send(r);
+        takt_reply_send(r);
     r->text[r->length++] = c;
 }
 
-void reply_text(struct reply *r, const char *text)
+void takt_reply_text(struct reply *r, const char *text)
 {
     for (; *text != '\0'; text++)
         put(r, *text);
 }
 
-void reply_counts(struct reply *r, int64_t counts, unsigned decimals)
+void takt_reply_counts(struct reply *r, int64_t counts, unsigned decimals)
 {
     char digits[DIGITS_MAX];
     uint64_t rest = counts < 0 ? (uint64_t)-counts : (uint64_t)counts;
@@ -43,10 +43,10 @@ void reply_counts(struct reply *r, int64_t counts, unsigned decimals)
         put(r, digits[--length]);
 }
 
-void reply_number(struct reply *r, double value, unsigned decimals)
+void takt_reply_number(struct reply *r, double value, unsigned decimals)
 {
     char digits[DECIMAL_TEXT_MAX];
-    const size_t length = decimal_write(digits, value, decimals);
+    const size_t length = takt_decimal_write(digits, value, decimals);
 
     for (size_t i = 0; i < length; i++)
         put(r, digits[i]);

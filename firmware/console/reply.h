@@ -17,12 +17,12 @@ struct reply {
     size_t length;
 };
 
-void reply_text(struct reply *r, const char *text);
+void takt_reply_text(struct reply *r, const char *text);
 /* counts / 10^decimals, with all of its decimals. */
-void reply_counts(struct reply *r, int64_t counts, unsigned decimals);
+void takt_reply_counts(struct reply *r, int64_t counts, unsigned decimals);
 /* Rounded. */
-void reply_number(struct reply *r, double value, unsigned decimals);
+void takt_reply_number(struct reply *r, double value, unsigned decimals);
 /* What has been put together goes out. */
-void reply_send(struct reply *r);
+void takt_reply_send(struct reply *r);
 
 #endif

@@ -5,17 +5,17 @@
 
 #define MM_PER_INCH 25.4
 
-/* Of positions in registers: 0.001 mm. */
+/* Decimals of positions in registers, whose unit is 0.001 mm. */
 #define POSITION_DECIMALS 3
 
 static void text(struct console *c, const char *words)
 {
-    reply_text(&c->reply, words);
+    takt_reply_text(&c->reply, words);
 }
 
 static void number(struct console *c, int64_t counts)
 {
-    reply_counts(&c->reply, counts, 0);
+    takt_reply_counts(&c->reply, counts, 0);
 }
 
 /* ---- status ---- */
@@ -68,9 +68,9 @@ static const char *state_word(const struct console *c, const struct panel_snapsh
 static void position(struct console *c, int64_t counts)
 {
     if (c->in_inches)
-        reply_number(&c->reply, (double)counts * 0.001 / MM_PER_INCH, POSITION_DECIMALS + 1);
+        takt_reply_number(&c->reply, (double)counts * 0.001 / MM_PER_INCH, POSITION_DECIMALS + 1);
     else
-        reply_counts(&c->reply, counts, POSITION_DECIMALS);
+        takt_reply_counts(&c->reply, counts, POSITION_DECIMALS);
 }
 
 /* Counts of each axis there is: of the row first, less those of the row second, if it is one. */
@@ -100,12 +100,12 @@ static void report_position(struct console *c, const struct panel_snapshot *now)
     axes(c, now, machine ? REGISTER_POSITION_X : REGISTER_WORK_POSITION_X, REGISTER_COUNT);
 }
 
-/* The planner takes lines as it needs them: so many more of eight characters find room. */
+/* The planner takes lines as it needs them: room is told in lines of this many characters. */
 #define BYTES_PER_LINE 8U
 
 static void report_buffer(struct console *c)
 {
-    const uint32_t room = lines_room(c->config.lines);
+    const uint32_t room = takt_lines_room(c->config.lines);
 
     if ((c->mask & CONSOLE_MASK_BUFFER) == 0)
         return;
@@ -168,7 +168,7 @@ static void report_pins(struct console *c, const struct panel_snapshot *now)
     text(c, now->value[REGISTER_EMERGENCY_STOP] != 0 ? "E" : "");
 }
 
-void console_report_status(struct console *c)
+void takt_console_report_status(struct console *c)
 {
     struct panel_snapshot now;
 
@@ -184,7 +184,7 @@ void console_report_status(struct console *c)
     report_overrides(c, &now);
     report_accessories(c, &now);
     text(c, ">");
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
 /* ---- $G ---- */
@@ -218,7 +218,7 @@ static void report_words(struct console *c, const struct panel_snapshot *now)
 
     (void)tell(c, CONSOLE_FACT_WORDS, words);
     text(c, " M");
-    reply_number(&c->reply, words[3], 0);
+    takt_reply_number(&c->reply, words[3], 0);
     if (now->value[REGISTER_COOLANT] == 0)
         text(c, " M9");
     if (now->value[REGISTER_MIST] != 0)
@@ -226,14 +226,14 @@ static void report_words(struct console *c, const struct panel_snapshot *now)
     if (now->value[REGISTER_FLOOD] != 0)
         text(c, " M8");
     text(c, " T");
-    reply_number(&c->reply, words[4], 0);
+    takt_reply_number(&c->reply, words[4], 0);
     text(c, " F");
-    reply_number(&c->reply, words[1] / (c->in_inches ? MM_PER_INCH : 1.0), 0);
+    takt_reply_number(&c->reply, words[1] / (c->in_inches ? MM_PER_INCH : 1.0), 0);
     text(c, " S");
-    reply_number(&c->reply, words[2], 0);
+    takt_reply_number(&c->reply, words[2], 0);
 }
 
-void console_report_modes(struct console *c, const struct panel_snapshot *now)
+void takt_console_report_modes(struct console *c, const struct panel_snapshot *now)
 {
     static const uint16_t paths[] = {610, 611, 640, 640};
     const uint32_t modes = now->value[REGISTER_MODES];
@@ -250,12 +250,12 @@ void console_report_modes(struct console *c, const struct panel_snapshot *now)
     text(c, paths[modes >> 4 & 3U] % 10 != 0 ? ".1" : "");
     report_words(c, now);
     text(c, "]");
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
 /* ---- $# ---- */
 
-void console_axes(struct console *c, const double value[AXIS_COUNT])
+void takt_console_axes(struct console *c, const double value[AXIS_COUNT])
 {
     const char *comma = "";
 
@@ -263,9 +263,9 @@ void console_axes(struct console *c, const double value[AXIS_COUNT])
         if (!c->config.machine->axis[i].present)
             continue;
         text(c, comma);
-        reply_number(&c->reply,
-                     value[i] / (c->in_inches && i < AXIS_LINEAR_COUNT ? MM_PER_INCH : 1.0),
-                     c->in_inches ? POSITION_DECIMALS + 1 : POSITION_DECIMALS);
+        takt_reply_number(&c->reply,
+                          value[i] / (c->in_inches && i < AXIS_LINEAR_COUNT ? MM_PER_INCH : 1.0),
+                          c->in_inches ? POSITION_DECIMALS + 1 : POSITION_DECIMALS);
         comma = ",";
     }
 }
@@ -278,9 +278,9 @@ static void report_fact(struct console *c, const char *name, enum console_fact f
     text(c, "[");
     text(c, name);
     text(c, ":");
-    console_axes(c, value);
+    takt_console_axes(c, value);
     text(c, "]");
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
 static void report_tool_offset(struct console *c)
@@ -289,24 +289,25 @@ static void report_tool_offset(struct console *c)
 
     (void)tell(c, CONSOLE_FACT_TOOL_OFFSET, value);
     text(c, "[TLO:");
-    reply_number(&c->reply, value[AXIS_Z] / (c->in_inches ? MM_PER_INCH : 1.0), POSITION_DECIMALS);
+    takt_reply_number(&c->reply, value[AXIS_Z] / (c->in_inches ? MM_PER_INCH : 1.0),
+                      POSITION_DECIMALS);
     text(c, "]");
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
-void console_report_probe(struct console *c)
+void takt_console_report_probe(struct console *c)
 {
     double value[AXIS_COUNT] = {0.0}, words[AXIS_COUNT] = {0.0};
 
     (void)tell(c, CONSOLE_FACT_PROBE, value);
     (void)tell(c, CONSOLE_FACT_WORDS, words);
     text(c, "[PRB:");
-    console_axes(c, value);
+    takt_console_axes(c, value);
     text(c, words[0] != 0.0 ? ":1]" : ":0]");
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
-void console_report_offsets(struct console *c)
+void takt_console_report_offsets(struct console *c)
 {
     static const struct {
         const char *name;
@@ -322,7 +323,7 @@ void console_report_offsets(struct console *c)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         report_fact(c, rows[i].name, rows[i].fact);
     report_tool_offset(c);
-    console_report_probe(c);
+    takt_console_report_probe(c);
 }
 
 /* ---- $I ---- */
@@ -342,7 +343,7 @@ static void report_axes(struct console *c)
         text(c, c->config.machine->axis[i].present ? letter : "");
     }
     text(c, "]");
-    console_line_end(c);
+    takt_console_line_end(c);
 }
 
 /*
@@ -351,9 +352,9 @@ static void report_axes(struct console *c)
  */
 #define OPTIONS "VM*$IL"
 
-void console_report_build(struct console *c, bool extended)
+void takt_console_report_build(struct console *c, bool extended)
 {
-    const uint32_t room = lines_capacity(c->config.lines);
+    const uint32_t room = takt_lines_capacity(c->config.lines);
 
     text(c, "[VER:1.1h.takt-");
     text(c, c->config.version);
@@ -364,10 +365,10 @@ void console_report_build(struct console *c, bool extended)
     text(c, ",");
     number(c, room);
     text(c, "]");
-    console_line_end(c);
+    takt_console_line_end(c);
     if (!extended)
         return;
     report_axes(c);
     text(c, "[NEWOPT:RT+]\r\n[FIRMWARE:takt]");
-    console_line_end(c);
+    takt_console_line_end(c);
 }

@@ -10,7 +10,7 @@
 #define S_PER_MIN       60.0
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
-/* Of a group, one for each axis. */
+/* Numbers of settings; of a group, which has one for each axis, the first. */
 enum {
     SETTING_MASK = 10,
     SETTING_INCHES = 13,
@@ -175,14 +175,14 @@ static bool is_of_axes(const struct setting *s)
 
 static void report(struct console *c, const struct setting *s, unsigned axis)
 {
-    reply_text(&c->reply, "$");
-    reply_counts(&c->reply, (int64_t)s->number + axis, 0);
-    reply_text(&c->reply, "=");
-    reply_number(&c->reply, s->get(c, axis), s->decimals);
-    console_line_end(c);
+    takt_reply_text(&c->reply, "$");
+    takt_reply_counts(&c->reply, (int64_t)s->number + axis, 0);
+    takt_reply_text(&c->reply, "=");
+    takt_reply_number(&c->reply, s->get(c, axis), s->decimals);
+    takt_console_line_end(c);
 }
 
-void console_report_settings(struct console *c)
+void takt_console_report_settings(struct console *c)
 {
     for (size_t i = 0; i < SETTINGS; i++) {
         for (unsigned axis = 0; axis < (is_of_axes(&settings[i]) ? AXIS_COUNT : 1U); axis++) {
@@ -225,22 +225,23 @@ static enum console_error set(struct console *c, unsigned number, double value)
     return maths_abs(s->get(c, axis) - value) <= SAME ? CONSOLE_OK : CONSOLE_UNKNOWN_COMMAND;
 }
 
-enum console_error console_set(struct console *c, const char *text)
+enum console_error takt_console_set(struct console *c, const char *text)
 {
     double number, value;
-    size_t length = decimal_read(text, characters_length(text), &number);
+    size_t length = takt_decimal_read(text, characters_length(text), &number);
     enum console_error error;
 
-    if (length == 0 || text[length] != '=' || number > UINT16_MAX || number != maths_floor(number))
+    if (length == 0 || text[length] != '=' || number > UINT16_MAX ||
+        number != takt_maths_floor(number))
         return CONSOLE_UNKNOWN_COMMAND;
     text += length + 1;
     if (*text == '-')
         return CONSOLE_NEGATIVE;
-    length = decimal_read(text, characters_length(text), &value);
+    length = takt_decimal_read(text, characters_length(text), &value);
     if (length == 0 || !characters_are_blank(text + length))
         return CONSOLE_BAD_NUMBER;
     error = set(c, (unsigned)number, value);
     if (error != CONSOLE_OK)
-        console_message(c, "settings are those of the machine file");
+        takt_console_message(c, "settings are those of the machine file");
     return error;
 }

@@ -21,7 +21,7 @@
 #define PEAK_ACCELERATION 5.773502691896258
 #define PEAK_JERK         60.0
 
-void approach_init(struct approach *approach, const struct point *start)
+void takt_approach_init(struct approach *approach, const struct point *start)
 {
     memset(approach, 0, sizeof(*approach));
     approach->to = *start;
@@ -33,7 +33,7 @@ static double time_for(const struct machine_axis *axis, double way_mm)
     const double by_velocity_s = PEAK_VELOCITY * way_mm / velocity_mm_s;
     const double by_acceleration_s =
         maths_sqrt(PEAK_ACCELERATION * way_mm / axis->max_acceleration_mm_s2);
-    const double by_jerk_s = maths_cbrt(PEAK_JERK * way_mm / axis->max_jerk_mm_s3);
+    const double by_jerk_s = takt_maths_cbrt(PEAK_JERK * way_mm / axis->max_jerk_mm_s3);
 
     return maths_max(by_velocity_s, maths_max(by_acceleration_s, by_jerk_s));
 }
@@ -79,7 +79,7 @@ static void begin_move(struct approach *approach, const struct machine *machine,
         }
     }
     approach->cycle = 0;
-    approach->cycles = 1 + (uint32_t)maths_ceil(1e6 * time_s / (double)machine->cycle_us);
+    approach->cycles = 1 + (uint32_t)takt_maths_ceil(1e6 * time_s / (double)machine->cycle_us);
 }
 
 static void make_cycle(struct approach *approach, struct point *setpoint)
@@ -102,8 +102,8 @@ static void make_cycle(struct approach *approach, struct point *setpoint)
     approach->cycles = 0;
 }
 
-bool approach_cycle(struct approach *approach, const struct machine *machine,
-                    const struct point *actual, struct point *setpoint)
+bool takt_approach_cycle(struct approach *approach, const struct machine *machine,
+                         const struct point *actual, struct point *setpoint)
 {
     unsigned order;
 

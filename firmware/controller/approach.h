@@ -19,13 +19,13 @@ struct approach {
     uint32_t cycle, cycles;    /* of the present move; 0 cycles: there is none */
 };
 
-void approach_init(struct approach *approach, const struct point *start);
+void takt_approach_init(struct approach *approach, const struct point *start);
 
 /*
  * One cycle. actual: where the drives stand, looked at in the first cycle. True: the axes are where the program
  * starts; *setpoint is that. False: *setpoint is the next one on the way.
  */
-bool approach_cycle(struct approach *approach, const struct machine *machine,
-                    const struct point *actual, struct point *setpoint);
+bool takt_approach_cycle(struct approach *approach, const struct machine *machine,
+                         const struct point *actual, struct point *setpoint);
 
 #endif

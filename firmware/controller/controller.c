@@ -2,8 +2,8 @@
 
 #include "base/maths.h"
 #include "controller/controller_feed.h"
-#include "controller/controller_lock.h"
 #include "controller/controller_shape.h"
+#include "controller/controller_spindle_sync.h"
 #include "controller/controller_steps.h"
 #include "controller/outputs.h"
 #include "controller/restart.h"
@@ -15,12 +15,12 @@ static double cycle_s(const struct machine *machine)
     return 1e-6 * (double)machine->cycle_us;
 }
 
-void controller_plan_limits(const struct machine *machine, struct plan_limits *limits)
+void takt_controller_plan_limits(const struct machine *machine, struct plan_limits *limits)
 {
     memset(limits, 0, sizeof(*limits));
-    limits->axes = machine_axes(machine);
+    limits->axes = takt_machine_axes(machine);
     limits->cycle_s = cycle_s(machine);
-    limits->law = (enum law)machine->law;
+    limits->profile = (enum ramp_profile)machine->profile;
     limits->landing = (enum landing)machine->landing;
     limits->chord_error_max_mm = 1.0 / machine->resolution_per_mm;
     for (int i = 0; i < AXIS_COUNT; i++) {
@@ -30,14 +30,14 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
     }
 }
 
-void controller_reserve_correction(struct correction *correction, const struct machine *machine,
-                                   struct plan_limits *limits)
+void takt_controller_reserve_correction(struct correction *correction,
+                                        const struct machine *machine, struct plan_limits *limits)
 {
     struct motion_bound most;
     struct need need;
 
-    machine_motion_bound(machine, &most);
-    correction_reserve(correction, &most, &need);
+    takt_machine_motion_bound(machine, &most);
+    takt_correction_reserve(correction, &most, &need);
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] -= need.velocity_mm_s[i];
         limits->acceleration_mm_s2[i] -= need.acceleration_mm_s2[i];
@@ -45,13 +45,13 @@ void controller_reserve_correction(struct correction *correction, const struct m
     }
 }
 
-void controller_program_config(const struct controller_config *config,
-                               struct program_config *program)
+void takt_controller_program_config(const struct controller_config *config,
+                                    struct program_config *program)
 {
     const struct machine *machine = config->machine;
 
     memset(program, 0, sizeof(*program));
-    program->axes = machine_axes(machine);
+    program->axes = takt_machine_axes(machine);
     for (int i = 0; i < AXIS_COUNT; i++) {
         program->travel_min[i] = machine->axis[i].travel_min_mm;
         program->travel_max[i] = machine->axis[i].travel_max_mm;
@@ -72,7 +72,7 @@ void controller_program_config(const struct controller_config *config,
     program->waits = true;
 }
 
-void controller_init(struct controller *c, const struct controller_config *config)
+void takt_controller_init(struct controller *c, const struct controller_config *config)
 {
     const struct point start = {0};
     struct drives_config drives;
@@ -83,22 +83,22 @@ void controller_init(struct controller *c, const struct controller_config *confi
     c->can = config->can;
     c->reader = config->reader;
     controller_shape_init(c, config);
-    correction_init(&c->correction, &c->machine.correction, machine_axes(&c->machine),
-                    cycle_s(&c->machine), config->correction, &start);
-    controller_start_program(c, config, &start);
+    takt_correction_init(&c->correction, &c->machine.correction, takt_machine_axes(&c->machine),
+                         cycle_s(&c->machine), config->correction, &start);
+    takt_controller_start_program(c, config, &start);
     c->state = CONTROLLER_STARTING;
-    spindle_watch_init(&c->spindle, cycle_s(&c->machine), c->machine.spindle_load_limit_percent,
-                       c->machine.spindle_at_speed_s);
-    tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
-    controller_lock_init(c);
+    takt_spindle_watch_init(&c->spindle, cycle_s(&c->machine),
+                            c->machine.spindle_load_limit_percent, c->machine.spindle_at_speed_s);
+    takt_tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
+    takt_controller_spindle_sync_init(c);
     c->dcf = config->dcf;
-    controller_drives_config(&c->machine, c->dcf, &drives);
-    drives_init(&c->drives, &drives);
-    controller_steps_init(c, &config->step);
-    (void)controller_cycle_is_enough(&c->machine, &c->warning);
-    controller_interpolator_config(&c->machine, &interpolator);
-    interpolator_init(&c->interpolator, &interpolator);
-    approach_init(&c->approach, &start);
+    takt_controller_drives_config(&c->machine, c->dcf, &drives);
+    takt_drives_init(&c->drives, &drives);
+    takt_controller_steps_init(c, &config->step);
+    (void)takt_controller_cycle_is_enough(&c->machine, &c->warning);
+    takt_controller_interpolator_config(&c->machine, &interpolator);
+    takt_interpolator_init(&c->interpolator, &interpolator);
+    takt_approach_init(&c->approach, &start);
 }
 
 /* The axes come to rest before it, where it waits. */
@@ -108,15 +108,15 @@ static void hold_back(struct controller *c, const struct move *move)
 
     stop.kind = MOVE_DWELL;
     stop.dwell_s = 0.0;
-    path_push(&c->path, &stop);
+    takt_path_push(&c->path, &stop);
     c->program_waits = true;
 }
 
 /* The move that has waited. */
 static void take_held(struct controller *c)
 {
-    if (controller_probe_begin(&c->probe)) {
-        path_push(&c->path, &c->probe.move);
+    if (takt_controller_probe_begin(&c->probe)) {
+        takt_path_push(&c->path, &c->probe.move);
         c->program_waits = false;
     }
 }
@@ -126,14 +126,14 @@ static void take_move(struct controller *c, struct move *move)
 {
     c->program_error.code = TAKT_OK;
     if (c->replays) {
-        replay_prepare(move);
+        takt_replay_prepare(move);
     }
     if (move->kind == MOVE_SETUP) {
-        correction_tell_setup(&c->correction, move->channel, move->setup);
+        takt_correction_tell_setup(&c->correction, move->channel, move->setup);
     }
-    if (controller_probe_ask(&c->probe, move, cycle_s(&c->machine),
-                             drives_have_probe(&c->drives))) {
-        path_push(&c->path, move);
+    if (takt_controller_probe_ask(&c->probe, move, cycle_s(&c->machine),
+                                  takt_drives_have_probe(&c->drives))) {
+        takt_path_push(&c->path, move);
     } else {
         hold_back(c, move);
     }
@@ -156,7 +156,8 @@ static void read_move(struct controller *c)
 {
     struct move move;
 
-    switch (offset_next(&c->reader->offset, &c->reader->program, &move, &c->program_error)) {
+    switch (takt_cutter_compensation_next(&c->reader->offset, &c->reader->program, &move,
+                                          &c->program_error)) {
     case PROGRAM_MOVE:
         take_move(c, &move);
         break;
@@ -174,7 +175,7 @@ static void read_move(struct controller *c)
         break;
     }
     if (c->program_ended) {
-        path_finish(&c->path);
+        takt_path_finish(&c->path);
     }
 }
 
@@ -184,13 +185,13 @@ static bool take_setup(struct controller *c, bool *good)
     if (!controller_probe_has_rest_for(&c->probe, MOVE_SETUP)) {
         return true;
     }
-    if (correction_is_setting_up(&c->correction)) {
+    if (takt_correction_is_setting_up(&c->correction)) {
         return false;
     }
-    if (correction_is_set_up(&c->correction)) {
+    if (takt_correction_is_set_up(&c->correction)) {
         return true;
     }
-    *good = correction_take_setup(&c->correction);
+    *good = takt_correction_take_setup(&c->correction);
     return !*good;
 }
 
@@ -201,7 +202,7 @@ static void take_answer(struct controller *c)
     struct diagnostic error;
     bool good = true;
 
-    if (!take_setup(c, &good) || !controller_probe_take(&c->probe, &answer, &error)) {
+    if (!take_setup(c, &good) || !takt_controller_probe_take(&c->probe, &answer, &error)) {
         return;
     }
     if (!good) {
@@ -211,48 +212,49 @@ static void take_answer(struct controller *c)
     if (error.code != TAKT_OK) {
         c->program_error = error;
         c->program_ended = true;
-        path_finish(&c->path);
+        takt_path_finish(&c->path);
         return;
     }
-    offset_answer(&c->reader->offset, &c->reader->program, &answer);
+    takt_cutter_compensation_answer(&c->reader->offset, &c->reader->program, &answer);
 }
 
 static bool can_read(struct controller *c)
 {
-    return !c->program_ended && !c->program_waits && !c->program_late && path_has_room(&c->path);
+    return !c->program_ended && !c->program_waits && !c->program_late &&
+           takt_path_has_room(&c->path);
 }
 
 /* A text that comes slowly begins to be driven when as much of it is there as is ever looked at. */
 static bool waits_for_text(struct controller *c)
 {
     return c->program_late && !c->motion.has_ceiling &&
-           (!c->program_begins || motion_ahead(&c->motion) == 0);
+           (!c->program_begins || takt_motion_ahead(&c->motion) == 0);
 }
 
 /* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
 #define TOP_UP_PART 8
 
-void controller_background(struct controller *c)
+void takt_controller_background(struct controller *c)
 {
     take_answer(c);
     if (c->replays) {
-        replay_read(&c->replay, &c->path.limits);
+        takt_replay_read(&c->replay, &c->path.limits);
     }
-    if (motion_wanted(&c->motion) == NULL) {
+    if (takt_motion_wanted(&c->motion) == NULL) {
         return;
     }
-    path_go_on(&c->path);
+    takt_path_go_on(&c->path);
     take_held(c);
     c->program_late = false;
-    const uint32_t wanted = path_look_ahead(&c->path, c->machine.look_ahead_blocks);
+    const uint32_t wanted = takt_path_look_ahead(&c->path, c->machine.look_ahead_blocks);
 
-    if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
-        while (can_read(c) && motion_ahead(&c->motion) < wanted) {
+    if (takt_motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
+        while (can_read(c) && takt_motion_ahead(&c->motion) < wanted) {
             read_move(c);
         }
     }
     if (!waits_for_text(c)) {
-        motion_build(&c->motion);
+        takt_motion_build(&c->motion);
     }
 }
 
@@ -273,8 +275,8 @@ static void come_to_start(struct controller *c)
 {
     struct point actual;
 
-    controller_get_actual(c, &actual);
-    if (approach_cycle(&c->approach, &c->machine, &actual, &c->record.set)) {
+    takt_controller_get_actual(c, &actual);
+    if (takt_approach_cycle(&c->approach, &c->machine, &actual, &c->record.set)) {
         c->record.cmd = c->record.set;
         controller_shape_restart(c);
         c->state = CONTROLLER_RUNNING;
@@ -285,7 +287,7 @@ static void come_to_start(struct controller *c)
 static void brake_off_the_path(struct controller *c)
 {
     if (c->state == CONTROLLER_STARTING) {
-        drives_stop_for(&c->drives, drives_get_fault(&c->drives));
+        takt_drives_stop_for(&c->drives, takt_drives_get_fault(&c->drives));
     }
 }
 
@@ -293,7 +295,7 @@ static void follow_drives(struct controller *c)
 {
     switch (drives_get_state(&c->drives)) {
     case DRIVES_STARTING:
-        motion_prepare(&c->motion);
+        takt_motion_prepare(&c->motion);
         break;
     case DRIVES_ENABLED:
         if (c->state == CONTROLLER_STARTING) {
@@ -309,7 +311,7 @@ static void follow_drives(struct controller *c)
         }
         break;
     case DRIVES_FAULTED:
-        controller_fail(c, drives_get_fault(&c->drives));
+        controller_fail(c, takt_drives_get_fault(&c->drives));
         break;
     }
 }
@@ -317,7 +319,7 @@ static void follow_drives(struct controller *c)
 /* The spindle's angle, speed and load. */
 static void follow_spindle(struct controller *c, const struct spindle_feedback *spindle)
 {
-    lock_measure(&c->lock, spindle);
+    spindle_sync_measure(&c->sync, spindle);
     if (c->state == CONTROLLER_RUNNING && !spindle_watch_cycle(&c->spindle, spindle)) {
         controller_fail(c, &(const struct diagnostic){.code = TAKT_ERROR_SPINDLE_SLOW});
     }
@@ -329,8 +331,8 @@ static void follow_changer(struct controller *c)
     const bool stands = c->state == CONTROLLER_RUNNING && c->motion.changes_tool;
     bool is_changed = false;
 
-    c->changer.is_there = drives_find_input(&c->drives, IO_TOOL_CHANGED, &is_changed);
-    const enum takt_error error = tool_changer_cycle(&c->changer, stands, is_changed);
+    c->changer.is_there = takt_drives_find_input(&c->drives, IO_TOOL_CHANGED, &is_changed);
+    const enum takt_error error = takt_tool_changer_cycle(&c->changer, stands, is_changed);
     if (error != TAKT_OK) {
         controller_fail(
             c, &(const struct diagnostic){.code = error, .value = c->machine.tool_change_s});
@@ -362,12 +364,12 @@ static void follow_events(struct controller *c)
         if (!path_at(&c->path, i)->motion) {
             struct move move;
 
-            path_read_move(&c->path, i, &move);
-            outputs_apply(&c->outputs, &c->surface, &move);
-            spindle_watch_pass(&c->spindle, &move);
+            takt_path_read_move(&c->path, i, &move);
+            takt_outputs_apply(&c->outputs, &c->surface, &move);
+            takt_spindle_watch_pass(&c->spindle, &move);
             if (move.kind == MOVE_WEAR) {
-                correction_set_wear(&c->correction, move.tool, move.wear_length_mm,
-                                    move.wear_time_s);
+                takt_correction_set_wear(&c->correction, move.tool, move.wear_length_mm,
+                                         move.wear_time_s);
             }
         }
     }
@@ -379,7 +381,7 @@ static void end_program(struct controller *c)
 {
     follow_events(c);
     if (!c->keeps_outputs) {
-        outputs_apply(&c->outputs, &c->surface, &path_first(&c->path)->move);
+        takt_outputs_apply(&c->outputs, &c->surface, &path_first(&c->path)->move);
     }
     c->state = CONTROLLER_COMPLETED;
 }
@@ -387,19 +389,19 @@ static void end_program(struct controller *c)
 /* A thread: the setpoint follows the spindle's angle. */
 static void follow_angle(struct controller *c, const struct motion_operator *asked)
 {
-    const enum lock_result result =
-        lock_cycle(&c->lock, &c->motion, asked, c->outputs.spindle_speed_rpm, &c->record);
+    const enum spindle_sync_result result = takt_spindle_sync_cycle(
+        &c->sync, &c->motion, asked, c->outputs.spindle_speed_rpm, &c->record);
 
-    if (result == LOCK_FAILED) {
-        controller_fail(c, lock_get_alarm(&c->lock));
+    if (result == SPINDLE_SYNC_FAILED) {
+        controller_fail(c, takt_spindle_sync_get_alarm(&c->sync));
     }
-    c->has_record = result == LOCK_CYCLE;
+    c->has_record = result == SPINDLE_SYNC_CYCLE;
 }
 
 /* A compiled program: the setpoint is on its curve. */
 static void follow_replay(struct controller *c, const struct motion_operator *asked)
 {
-    c->has_record = replay_cycle(&c->replay, &c->motion, asked, &c->record) == REPLAY_CYCLE;
+    c->has_record = takt_replay_cycle(&c->replay, &c->motion, asked, &c->record) == REPLAY_CYCLE;
     if (!c->has_record) {
         controller_fail(c, &c->replay.alarm);
     }
@@ -408,7 +410,7 @@ static void follow_replay(struct controller *c, const struct motion_operator *as
 /* The setpoint is not motion's. */
 static void follow_handed_over(struct controller *c, const struct motion_operator *asked)
 {
-    if (!controller_feed_is_product(c)) {
+    if (!takt_controller_feed_is_product(c)) {
         follow_angle(c, asked);
         return;
     }
@@ -416,7 +418,7 @@ static void follow_handed_over(struct controller *c, const struct motion_operato
         follow_replay(c, asked);
         return;
     }
-    product_cycle(&c->product, &c->motion, asked, &c->record);
+    takt_product_cycle(&c->product, &c->motion, asked, &c->record);
     c->has_record = true;
 }
 
@@ -425,7 +427,8 @@ static void fail_stalled(struct controller *c)
 {
     struct diagnostic stalled;
 
-    diagnostic_set(&stalled, TAKT_ERROR_STALLED, motion_stalled_line(&c->motion), 0, "", 0, 0.0);
+    takt_diagnostic_set(&stalled, TAKT_ERROR_STALLED, takt_motion_stalled_line(&c->motion), 0, "",
+                        0, 0.0);
     controller_fail(c, &stalled);
 }
 
@@ -433,7 +436,7 @@ static void follow_path(struct controller *c, const struct inputs *in)
 {
     const struct motion_operator asked = operator_of(c, in);
 
-    switch (motion_cycle(&c->motion, &asked, &c->record)) {
+    switch (takt_motion_cycle(&c->motion, &asked, &c->record)) {
     case MOTION_CYCLE:
         c->has_record = true;
         break;
@@ -454,11 +457,11 @@ static void follow_path(struct controller *c, const struct inputs *in)
     }
 }
 
-void controller_get_actual(const struct controller *c, struct point *actual)
+void takt_controller_get_actual(const struct controller *c, struct point *actual)
 {
     drives_get_actual(&c->drives, actual);
     if (steps_are_there(&c->steps)) {
-        steps_get_actual(&c->steps, actual);
+        takt_steps_get_actual(&c->steps, actual);
     }
 }
 
@@ -469,7 +472,7 @@ static struct controller_place place_of(const struct controller *c)
 
     const struct point *corrected = controller_shape_input(c);
 
-    controller_get_actual(c, &at.reported);
+    takt_controller_get_actual(c, &at.reported);
     for (int i = 0; i < AXIS_COUNT; i++) {
         at.actual.at[i] = at.reported.at[i] - (corrected->at[i] - c->record.cmd.at[i]);
     }
@@ -481,14 +484,14 @@ static void follow_probe(struct controller *c, const struct inputs *in)
 {
     const struct controller_place at = place_of(c);
 
-    if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &at)) {
-        motion_end_here(&c->motion);
+    if (takt_controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &at)) {
+        takt_motion_end_here(&c->motion);
     }
-    if (c->program_waits && motion_is_idle(&c->motion) && controller_shape_is_settled(c)) {
+    if (c->program_waits && takt_motion_is_idle(&c->motion) && controller_shape_is_settled(c)) {
         struct inputs seen = *in;
 
-        drives_add_inputs(&c->drives, &seen);
-        (void)controller_probe_rest(&c->probe, &seen, &c->drives, &c->record.cmd, &at);
+        takt_drives_add_inputs(&c->drives, &seen);
+        (void)takt_controller_probe_rest(&c->probe, &seen, &c->drives, &c->record.cmd, &at);
     }
 }
 
@@ -496,8 +499,8 @@ static void follow_probe(struct controller *c, const struct inputs *in)
 static void interpolate(struct controller *c, const struct block *block)
 {
     if (!interpolator_is_exact(&c->interpolator) && block_is_motion(block)) {
-        interpolator_cycle(&c->interpolator, &block->curve, c->record.block, c->record.landed,
-                           &c->record.cmd);
+        takt_interpolator_cycle(&c->interpolator, &block->curve, c->record.block, c->record.landed,
+                                &c->record.cmd);
     }
 }
 
@@ -506,9 +509,9 @@ static void complete_record(struct controller *c, const struct inputs *in)
     const struct block *block = motion_block(&c->motion);
 
     interpolate(c, block);
-    correction_cycle(&c->correction, &c->record.cmd, &block->move, &c->record.set);
-    controller_shape_cycle(c, move_is_locked(&block->move));
-    controller_get_actual(c, &c->record.act);
+    takt_correction_cycle(&c->correction, &c->record.cmd, &block->move, &c->record.set);
+    controller_shape_cycle(c, move_is_synchronized(&block->move));
+    takt_controller_get_actual(c, &c->record.act);
     c->record.spindle_rev = in->spindle.angle_rev;
 }
 
@@ -517,14 +520,14 @@ static bool stands_corrected(const struct controller *c)
 {
     return drives_get_state(&c->drives) == DRIVES_ENABLED &&
            (c->state == CONTROLLER_COMPLETED ||
-            (c->state != CONTROLLER_STARTING && correction_get_running(&c->correction) != 0));
+            (c->state != CONTROLLER_STARTING && takt_correction_get_running(&c->correction) != 0));
 }
 
 /* A cycle without motion. */
 static void stand(struct controller *c)
 {
     if (stands_corrected(c)) {
-        correction_stand(&c->correction, &c->record.cmd, &c->record.set);
+        takt_correction_stand(&c->correction, &c->record.cmd, &c->record.set);
         controller_shape_cycle(c, false);
     }
 }
@@ -532,7 +535,7 @@ static void stand(struct controller *c)
 /* What is sent, too. */
 static bool stands_still(const struct controller *c)
 {
-    return motion_rests(&c->motion) && controller_shape_is_settled(c);
+    return takt_motion_rests(&c->motion) && controller_shape_is_settled(c);
 }
 
 /* Nothing that stands behind the place in the program is done any more. */
@@ -541,13 +544,13 @@ static bool rests_after_fault(const struct controller *c)
     return drives_get_state(&c->drives) == DRIVES_STOPPING && stands_still(c);
 }
 
-void controller_cycle(struct controller *c, const struct inputs *inputs)
+void takt_controller_cycle(struct controller *c, const struct inputs *inputs)
 {
     const bool starts = c->state == CONTROLLER_STARTING; /* that is enough for one cycle */
 
     c->has_record = false;
-    drives_receive(&c->drives, c->can.port);
-    drives_sync(&c->drives, c->can.port);
+    takt_drives_receive(&c->drives, c->can.port);
+    takt_drives_sync(&c->drives, c->can.port);
     follow_drives(c);
     follow_spindle(c, &inputs->spindle);
     if (c->state == CONTROLLER_RUNNING && !starts && !rests_after_fault(c)) {
@@ -562,17 +565,17 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
     } else {
         stand(c);
     }
-    controller_lock_command(c);
+    controller_spindle_sync_command(c);
     if (drives_get_state(&c->drives) == DRIVES_STOPPING && c->state == CONTROLLER_RUNNING &&
         !stands_still(c)) {
         drives_await_rest(&c->drives);
     }
-    drives_send(&c->drives, c->can.port, &c->record.set);
+    takt_drives_send(&c->drives, c->can.port, &c->record.set);
     if (drives_have_io(&c->drives)) {
         follow_changer(c);
-        drives_send_outputs(&c->drives, c->can.port, &c->outputs);
+        takt_drives_send_outputs(&c->drives, c->can.port, &c->outputs);
     }
     if (steps_are_there(&c->steps)) {
-        controller_steps_cycle(c);
+        takt_controller_steps_cycle(c);
     }
 }

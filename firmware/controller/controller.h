@@ -1,13 +1,13 @@
 /*
  * The controller: a part program in, setpoints to drives out. The only room that knows all others.
  *
- * Two callers: the control cycle calls controller_cycle once per cycle (an interrupt on a target), the background
- * calls controller_background as often as it likes. On the host one loop calls both:
+ * Two callers: the control cycle calls takt_controller_cycle once per cycle (an interrupt on a target), the background
+ * calls takt_controller_background as often as it likes. On the host one loop calls both:
  *
- *     controller_init(&c, &config);
- *     while (controller_get_state(&c) < CONTROLLER_COMPLETED) {
- *         controller_background(&c);
- *         controller_cycle(&c, &inputs);
+ *     takt_controller_init(&c, &config);
+ *     while (takt_controller_get_state(&c) < CONTROLLER_COMPLETED) {
+ *         takt_controller_background(&c);
+ *         takt_controller_cycle(&c, &inputs);
  *         ... move the world by one cycle ...
  *     }
  *
@@ -45,7 +45,7 @@ struct controller_config {
     struct step_port step;          /* pulses; not used by a machine without step drives */
     const struct tool_table *tools; /* NULL: empty. Must outlive the controller */
     struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
-    const struct correction_tables *correction; /* NULL: no tables; see correction_init */
+    const struct correction_tables *correction; /* NULL: no tables; see takt_correction_init */
 #ifndef SHAPE_IS_ABSENT
     struct shape *
         shape; /* of the machine's modes; its alone. NULL: setpoints go to the drives as they are */
@@ -67,84 +67,85 @@ enum controller_state {
     CONTROLLER_RUNNING,  /* a program cycle each call, from the next one on */
     CONTROLLER_STOPPING, /* after a fault of a drive: the drives brake; no program cycle any more */
     CONTROLLER_COMPLETED,
-    CONTROLLER_FAULTED /* see controller_get_fault */
+    CONTROLLER_FAULTED /* see takt_controller_get_fault */
 };
 
 #include "controller/controller_state.h"
 
-void controller_init(struct controller *c, const struct controller_config *config);
-void controller_background(struct controller *c);
+void takt_controller_init(struct controller *c, const struct controller_config *config);
+void takt_controller_background(struct controller *c);
 /* One control cycle with what is known of the world at its start. */
-void controller_cycle(struct controller *c, const struct inputs *inputs);
+void takt_controller_cycle(struct controller *c, const struct inputs *inputs);
 
-enum controller_state controller_get_state(const struct controller *c);
+enum controller_state takt_controller_get_state(const struct controller *c);
 /* What went wrong; meaningful in CONTROLLER_FAULTED. */
-const struct diagnostic *controller_get_fault(const struct controller *c);
+const struct diagnostic *takt_controller_get_fault(const struct controller *c);
 /* The drives as the controller knows them, to be looked at. */
-const struct drives *controller_get_drives(const struct controller *c);
+const struct drives *takt_controller_get_drives(const struct controller *c);
 /*
  * What the last cycle did. NULL if it was no program cycle (drives starting, or after the end). The program cycles
  * are numbered 0, 1, 2, ... without gaps.
  */
-const struct cycle_record *controller_get_record(const struct controller *c);
+const struct cycle_record *takt_controller_get_record(const struct controller *c);
 /* Where the axes are by what the drives have reported last. */
-void controller_get_actual(const struct controller *c, struct point *actual);
+void takt_controller_get_actual(const struct controller *c, struct point *actual);
 /* How many questions of the program (G38, M66) have been answered, and the last answer. */
-uint32_t controller_get_answers(const struct controller *c, struct program_answer *last);
+uint32_t takt_controller_get_answers(const struct controller *c, struct program_answer *last);
 /* The axes rest because the text of the program, which is still coming, has not come in time; they go on by themselves. */
-bool controller_is_starved(const struct controller *c);
+bool takt_controller_is_starved(const struct controller *c);
 /* What is there of a text that comes slowly is driven now. */
-void controller_begin(struct controller *c);
+void takt_controller_begin(struct controller *c);
 /* Flood, or else mist. */
-void controller_set_coolant(struct controller *c, bool flood, bool on);
+void takt_controller_set_coolant(struct controller *c, bool flood, bool on);
 /* Exchanges with the background that it was too late for: the axes then stop at the end of the known path. */
-uint64_t controller_get_late(const struct controller *c);
+uint64_t takt_controller_get_late(const struct controller *c);
 /* The machine's outputs as the last cycle left them. Valid until the next cycle. */
-const struct outputs *controller_get_outputs(const struct controller *c);
+const struct outputs *takt_controller_get_outputs(const struct controller *c);
 /* The block the last program cycle executed; NULL as above. Valid until the next cycle. */
-const struct block *controller_get_block(const struct controller *c);
+const struct block *takt_controller_get_block(const struct controller *c);
 
 /*
  * The frequency that circles in the planes of a machine's linear axes need, and what governs it; 0 Hz without two such
  * axes. limits: of the plane that needs most; may be NULL.
  */
-void controller_cycle_need(const struct machine *machine, struct cycle_need *need,
-                           struct cycle_limits *limits);
+void takt_controller_cycle_need(const struct machine *machine, struct cycle_need *need,
+                                struct cycle_limits *limits);
 
 /*
  * Compares the machine's control cycle with the frequency at which the fastest circle its linear axes can drive keeps the
  * chord error of one increment. False: it is slower, and the planner limits the feed of curves instead; *warning says so.
  */
-bool controller_cycle_is_enough(const struct machine *machine, struct diagnostic *warning);
+bool takt_controller_cycle_is_enough(const struct machine *machine, struct diagnostic *warning);
 
 /*
  * What the controller has to say about its machine at the start: TAKT_OK, or CYCLE_SLOW.
  */
-const struct diagnostic *controller_get_warning(const struct controller *c);
+const struct diagnostic *takt_controller_get_warning(const struct controller *c);
 
-/* The machine's interpolator: what controller_init itself uses. */
-void controller_interpolator_config(const struct machine *machine,
-                                    struct interpolator_config *config);
+/* The machine's interpolator: what takt_controller_init itself uses. */
+void takt_controller_interpolator_config(const struct machine *machine,
+                                         struct interpolator_config *config);
 
 /* What the machine's interpolator erred by so far; all 0 for the exact one. */
-const struct interpolator_errors *controller_get_interpolator_errors(const struct controller *c);
+const struct interpolator_errors *
+takt_controller_get_interpolator_errors(const struct controller *c);
 
-/* The planner's limits that follow from a machine: what controller_init itself uses. */
-void controller_plan_limits(const struct machine *machine, struct plan_limits *limits);
+/* The planner's limits that follow from a machine: what takt_controller_init itself uses. */
+void takt_controller_plan_limits(const struct machine *machine, struct plan_limits *limits);
 
-/* Takes from the limits what correction needs of the axes: what controller_init itself uses. */
-void controller_reserve_correction(struct correction *correction, const struct machine *machine,
-                                   struct plan_limits *limits);
+/* Takes from the limits what correction needs of the axes: what takt_controller_init itself uses. */
+void takt_controller_reserve_correction(struct correction *correction,
+                                        const struct machine *machine, struct plan_limits *limits);
 
 /* Position-error correction, to switch layers, tell temperatures and load tables between two cycles. */
-struct correction *controller_get_correction(struct controller *c);
+struct correction *takt_controller_get_correction(struct controller *c);
 
-/* The drives that follow from a machine, which must outlive them: what controller_init itself uses. */
-void controller_drives_config(const struct machine *machine, const struct concise_dcf *dcf,
-                              struct drives_config *config);
+/* The drives that follow from a machine, which must outlive them: what takt_controller_init itself uses. */
+void takt_controller_drives_config(const struct machine *machine, const struct concise_dcf *dcf,
+                                   struct drives_config *config);
 
-/* The program configuration that follows from a machine: what controller_init itself uses. */
-void controller_program_config(const struct controller_config *config,
-                               struct program_config *program);
+/* The program configuration that follows from a machine: what takt_controller_init itself uses. */
+void takt_controller_program_config(const struct controller_config *config,
+                                    struct program_config *program);
 
 #endif

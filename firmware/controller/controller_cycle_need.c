@@ -15,8 +15,8 @@ static struct cycle_limits plane_limits(const struct machine_axis *a, const stru
     };
 }
 
-void controller_cycle_need(const struct machine *machine, struct cycle_need *need,
-                           struct cycle_limits *limits)
+void takt_controller_cycle_need(const struct machine *machine, struct cycle_need *need,
+                                struct cycle_limits *limits)
 {
     *need = (struct cycle_need){0};
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
@@ -27,7 +27,7 @@ void controller_cycle_need(const struct machine *machine, struct cycle_need *nee
         if (!machine->axis[i].present || !machine->axis[k].present) {
             continue;
         }
-        cycle_frequency_find(&of_axes, 1.0 / machine->resolution_per_mm, &of_plane);
+        takt_cycle_frequency_find(&of_axes, 1.0 / machine->resolution_per_mm, &of_plane);
         if (of_plane.frequency_hz > need->frequency_hz) {
             *need = of_plane;
             if (limits != NULL) {
@@ -37,17 +37,17 @@ void controller_cycle_need(const struct machine *machine, struct cycle_need *nee
     }
 }
 
-bool controller_cycle_is_enough(const struct machine *machine, struct diagnostic *warning)
+bool takt_controller_cycle_is_enough(const struct machine *machine, struct diagnostic *warning)
 {
     const double frequency_hz = 1e6 / (double)machine->cycle_us;
     struct cycle_need need;
 
-    controller_cycle_need(machine, &need, NULL);
+    takt_controller_cycle_need(machine, &need, NULL);
     *warning = (struct diagnostic){.code = TAKT_OK};
     if (frequency_hz >= need.frequency_hz) {
         return true;
     }
-    diagnostic_set(warning, TAKT_ERROR_CYCLE_SLOW, 0, 0, "", 0, frequency_hz);
-    diagnostic_set_limit(warning, 0.1 * maths_ceil(10.0 * need.frequency_hz));
+    takt_diagnostic_set(warning, TAKT_ERROR_CYCLE_SLOW, 0, 0, "", 0, frequency_hz);
+    takt_diagnostic_set_limit(warning, 0.1 * takt_maths_ceil(10.0 * need.frequency_hz));
     return false;
 }

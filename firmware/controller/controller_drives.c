@@ -11,7 +11,7 @@
 
 static uint32_t cycles_in(const struct machine *machine, double time_s)
 {
-    return (uint32_t)maths_ceil(1e6 * time_s / (double)machine->cycle_us);
+    return (uint32_t)takt_maths_ceil(1e6 * time_s / (double)machine->cycle_us);
 }
 
 static void set_homing(struct drives_homing *homing, const struct machine *machine,
@@ -100,7 +100,7 @@ static uint8_t find_drive(const struct drives_config *config, unsigned axis)
     return i;
 }
 
-/* Of its own is no more than what its place on the gantry asks for. */
+/* The second drive differs from the first only in what its place on the gantry asks for. */
 static void add_second(struct drives_config *config, const struct machine *machine,
                        const struct machine_gantry *gantry)
 {
@@ -135,12 +135,12 @@ static void set_up_last(struct drives_config *config, const struct concise_dcf *
     }
 }
 
-void controller_drives_config(const struct machine *machine, const struct concise_dcf *dcf,
-                              struct drives_config *config)
+void takt_controller_drives_config(const struct machine *machine, const struct concise_dcf *dcf,
+                                   struct drives_config *config)
 {
     memset(config, 0, sizeof(*config));
     config->cycle_us = machine->cycle_us;
-    config->rates = machine_get_rates(machine);
+    config->rates = takt_machine_get_rates(machine);
     config->controller_node = machine->controller_node;
     config->no_error_pdo = machine->error_pdo == 0;
     config->heartbeat_ms = (uint16_t)machine->heartbeat_ms;
@@ -150,7 +150,7 @@ void controller_drives_config(const struct machine *machine, const struct concis
     config->sdo_timeout_cycles = cycles_in(machine, 1e-3 * machine->sdo_timeout_ms);
     config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);
     config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
-    config->io_count = machine_io_count(machine);
+    config->io_count = takt_machine_io_count(machine);
     config->wiring = machine->io;
     config->position_gain_per_s = position_gain_per_s(machine);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
@@ -159,7 +159,7 @@ void controller_drives_config(const struct machine *machine, const struct concis
             set_up_last(config, dcf, i);
         }
     }
-    for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+    for (unsigned i = 0; i < takt_machine_gantry_count(machine); i++) {
         add_second(config, machine, &machine->gantry[i]);
         set_up_last(config, dcf, AXIS_COUNT + i);
     }

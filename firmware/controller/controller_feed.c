@@ -2,7 +2,7 @@
 
 #include "motion/handover.h"
 
-void controller_feed_init(struct controller *c, const struct replay_source *compiled)
+void takt_controller_feed_init(struct controller *c, const struct replay_source *compiled)
 {
     struct product_config config = {.limiter = (enum limiter_form)c->machine.limiter,
                                     .cycle_s = 1e-6 * (double)c->machine.cycle_us};
@@ -10,19 +10,19 @@ void controller_feed_init(struct controller *c, const struct replay_source *comp
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         config.band_percent[i] = c->machine.axis[i].limiter_band_percent;
     }
-    handover_allow(&c->motion);
+    takt_handover_allow(&c->motion);
     if (c->machine.landing == LANDING_SCALE || c->machine.limiter != LIMITER_CEILING) {
-        handover_allow_all(&c->motion);
+        takt_handover_allow_all(&c->motion);
     }
-    product_init(&c->product, &config);
+    takt_product_init(&c->product, &config);
     c->replays = compiled != NULL;
     if (c->replays) {
-        replay_init(&c->replay, path_lend(&c->path, sizeof(struct intake)), compiled);
-        handover_allow_linear(&c->motion);
+        takt_replay_init(&c->replay, takt_path_lend(&c->path, sizeof(struct intake)), compiled);
+        takt_handover_allow_linear(&c->motion);
     }
 }
 
-bool controller_feed_is_product(const struct controller *c)
+bool takt_controller_feed_is_product(const struct controller *c)
 {
-    return !move_kind_is_locked(path_kind(&c->path, c->path.first));
+    return !move_kind_is_synchronized(takt_path_kind(&c->path, c->path.first));
 }

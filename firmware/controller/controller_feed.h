@@ -7,10 +7,10 @@
 
 #include "controller/controller.h"
 
-/* After motion_init: a program begins. compiled: see struct controller_config. */
-void controller_feed_init(struct controller *c, const struct replay_source *compiled);
+/* After takt_motion_init: a program begins. compiled: see struct controller_config. */
+void takt_controller_feed_init(struct controller *c, const struct replay_source *compiled);
 
 /* Is the block that motion stands before executed by the product? Else by the lock. */
-bool controller_feed_is_product(const struct controller *c);
+bool takt_controller_feed_is_product(const struct controller *c);
 
 #endif

@@ -4,8 +4,8 @@
 #include "base/maths.h"
 
 /* V_max: of two linear axes at once, each as fast as the fastest. */
-void controller_interpolator_config(const struct machine *machine,
-                                    struct interpolator_config *config)
+void takt_controller_interpolator_config(const struct machine *machine,
+                                         struct interpolator_config *config)
 {
     double range_mm = 0.0;
     double velocity_mm_s = 0.0;
@@ -24,8 +24,8 @@ void controller_interpolator_config(const struct machine *machine,
         .kind = (enum interpolator_kind)machine->interpolator,
         .end_shift = machine->interpolator_end_shift,
         .angle_bits = machine->interpolator_angle_bits,
-        .unit_mm = interpolator_unit_mm(1.0 / machine->resolution_per_mm, range_mm,
-                                        machine->interpolator_word_bits),
+        .unit_mm = takt_interpolator_unit_mm(1.0 / machine->resolution_per_mm, range_mm,
+                                             machine->interpolator_word_bits),
         .way_max_mm = maths_sqrt(2.0) * velocity_mm_s * 1e-6 * (double)machine->cycle_us,
     };
 }

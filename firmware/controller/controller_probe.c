@@ -11,22 +11,22 @@ static bool is_probing(const struct controller_probe *q)
     return q->state == PROBE_ASKED && q->move.kind == MOVE_PROBE;
 }
 
-bool controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
-                          bool latches)
+bool takt_controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
+                               bool latches)
 {
     if (move->kind != MOVE_PROBE && move->kind != MOVE_INPUT &&
         !(move->kind == MOVE_SETUP && move->setup_ends)) {
         return true;
     }
     *q = (struct controller_probe){.move = *move, .answers = q->answers, .taken = q->taken};
-    q->cycles_left = (uint64_t)maths_min(maths_ceil(move->timeout_s / cycle_s), CYCLES_MAX);
+    q->cycles_left = (uint64_t)maths_min(takt_maths_ceil(move->timeout_s / cycle_s), CYCLES_MAX);
     q->latches = latches && move->kind == MOVE_PROBE;
     handoff_order();
     q->state = q->latches ? PROBE_HELD : PROBE_ASKED;
     return !q->latches;
 }
 
-bool controller_probe_begin(struct controller_probe *q)
+bool takt_controller_probe_begin(struct controller_probe *q)
 {
     if (q->state != PROBE_ARMED) {
         return false;
@@ -51,8 +51,8 @@ static void find(struct controller_probe *q, const struct controller_place *at)
 }
 
 /* As in LinuxCNC, a move that must find what it looks for may not begin where it is found already. */
-bool controller_probe_watch(struct controller_probe *q, const struct move *executed,
-                            const struct inputs *inputs, const struct controller_place *at)
+bool takt_controller_probe_watch(struct controller_probe *q, const struct move *executed,
+                                 const struct inputs *inputs, const struct controller_place *at)
 {
     const bool begins = !q->begun;
 
@@ -81,7 +81,7 @@ static void take_latched(struct program_answer *answer, const struct drives *dri
 {
     struct point latched = answer->rest_at;
 
-    drives_get_latched(drives, &latched);
+    takt_drives_get_latched(drives, &latched);
     for (int i = 0; i < AXIS_COUNT; i++) {
         answer->contact_at.at[i] += latched.at[i] - answer->rest_at.at[i];
     }
@@ -94,7 +94,7 @@ static bool is_reading(struct controller_probe *q, struct drives *drives)
         return false;
     }
     if (!q->reads) {
-        drives_read_probe(drives);
+        takt_drives_read_probe(drives);
         q->reads = true;
     }
     if (drives_probe_is_busy(drives)) {
@@ -134,7 +134,7 @@ static bool end_probing(struct controller_probe *q, const struct inputs *inputs,
 static void arm(struct controller_probe *q, struct drives *drives)
 {
     if (!q->begun) {
-        drives_arm_probe(drives, q->move.probe_away);
+        takt_drives_arm_probe(drives, q->move.probe_away);
         q->begun = true;
     } else if (!drives_probe_is_busy(drives)) {
         q->begun = false;
@@ -181,9 +181,9 @@ static bool end_waiting(struct controller_probe *q, const struct inputs *inputs)
     return false;
 }
 
-bool controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
-                           struct drives *drives, const struct point *rest,
-                           const struct controller_place *at)
+bool takt_controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
+                                struct drives *drives, const struct point *rest,
+                                const struct controller_place *at)
 {
     if (q->state == PROBE_HELD) {
         arm(q, drives);
@@ -205,15 +205,15 @@ bool controller_probe_rest(struct controller_probe *q, const struct inputs *inpu
     return true;
 }
 
-bool controller_probe_take(struct controller_probe *q, struct program_answer *answer,
-                           struct diagnostic *error)
+bool takt_controller_probe_take(struct controller_probe *q, struct program_answer *answer,
+                                struct diagnostic *error)
 {
     if (q->state != PROBE_ANSWERED) {
         return false;
     }
     handoff_order();
     *answer = q->answer;
-    diagnostic_set(error, q->error, q->move.line, 0, "", 0, 0.0);
+    takt_diagnostic_set(error, q->error, q->move.line, 0, "", 0, 0.0);
     q->answers++;
     q->taken = q->answer;
     handoff_order();

@@ -4,13 +4,13 @@
  *
  *     background                              control cycle
  *       program gives out the move
- *       controller_probe_ask     ──────────→    controller_probe_rest    where drives have touch probes: they are armed
- *       controller_probe_begin   ←──────────
- *       the move goes onto the path  ──────→    controller_probe_watch   the move is executed; true: brake now
+ *       takt_controller_probe_ask     ──────────→    takt_controller_probe_rest    where drives have touch probes: they are armed
+ *       takt_controller_probe_begin   ←──────────
+ *       the move goes onto the path  ──────→    takt_controller_probe_watch   the move is executed; true: brake now
  *       program says PROGRAM_WAIT               ...
- *                                               controller_probe_rest    nothing moves any more; true: answered
- *       controller_probe_take    ←──────────
- *       offset_answer, and on from where the axes rest
+ *                                               takt_controller_probe_rest    nothing moves any more; true: answered
+ *       takt_controller_probe_take    ←──────────
+ *       takt_cutter_compensation_answer, and on from where the axes rest
  *
  * Nobody else is asked meanwhile: the program reads nothing until it is answered. struct controller_probe passes from
  * the background to the cycle by ask and back when it is answered; nobody touches it out of turn.
@@ -50,13 +50,13 @@ struct controller_probe {
 
 /*
  * A move has come from the program: remembers it when it asks for something. latches: drives have touch probes. False: it
- * is not to go onto the path before controller_probe_begin says so.
+ * is not to go onto the path before takt_controller_probe_begin says so.
  */
-bool controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
-                          bool latches);
+bool takt_controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
+                               bool latches);
 
 /* True, once: touch probes are armed; the move goes onto the path now. */
-bool controller_probe_begin(struct controller_probe *q);
+bool takt_controller_probe_begin(struct controller_probe *q);
 
 /* Is there something to watch, and to answer? */
 static inline bool controller_probe_is_asked(const struct controller_probe *q)
@@ -74,16 +74,16 @@ struct controller_place {
 /*
  * In each cycle that executes a motion. True, once: the motion is to brake at once and to end where it comes to rest.
  */
-bool controller_probe_watch(struct controller_probe *q, const struct move *executed,
-                            const struct inputs *inputs, const struct controller_place *at);
+bool takt_controller_probe_watch(struct controller_probe *q, const struct move *executed,
+                                 const struct inputs *inputs, const struct controller_place *at);
 
 /*
  * In each cycle in which all that has been read is done and the program waits. rest: where the axes have been sent to
  * last. True: answered.
  */
-bool controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
-                           struct drives *drives, const struct point *rest,
-                           const struct controller_place *at);
+bool takt_controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
+                                struct drives *drives, const struct point *rest,
+                                const struct controller_place *at);
 
 /* An answer to a move of this kind waits to be taken? */
 static inline bool controller_probe_has_rest_for(const struct controller_probe *q,
@@ -93,7 +93,7 @@ static inline bool controller_probe_has_rest_for(const struct controller_probe *
 }
 
 /* The answer that waits to be taken, and TAKT_OK or the error that ends the program; false: there is none. */
-bool controller_probe_take(struct controller_probe *q, struct program_answer *answer,
-                           struct diagnostic *error);
+bool takt_controller_probe_take(struct controller_probe *q, struct program_answer *answer,
+                                struct diagnostic *error);
 
 #endif

@@ -5,13 +5,13 @@
 #ifndef TAKT_CONTROLLER_CONTROLLER_READER_H
 #define TAKT_CONTROLLER_CONTROLLER_READER_H
 
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "program/program.h"
 
 /* Private, but the caller owns it. */
 struct controller_reader {
     struct program program;
-    struct offset offset;
+    struct cutter_compensation offset;
 };
 
 #endif

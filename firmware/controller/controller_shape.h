@@ -32,7 +32,7 @@ static inline void controller_shape_init(struct controller *c,
 static inline void controller_shape_leave(const struct controller *c, struct plan_limits *limits)
 {
     if (controller_shape_of(c) != NULL) {
-        shape_leave(controller_shape_of(c), limits);
+        takt_shape_leave(controller_shape_of(c), limits);
     }
 }
 
@@ -40,7 +40,7 @@ static inline void controller_shape_leave(const struct controller *c, struct pla
 static inline void controller_shape_restart(struct controller *c)
 {
     if (controller_shape_of(c) != NULL) {
-        shape_restart(controller_shape_of(c), &c->record.set);
+        takt_shape_restart(controller_shape_of(c), &c->record.set);
     }
 }
 
@@ -53,20 +53,21 @@ static inline void controller_shape_cycle(struct controller *c, bool passes)
     if (passes) {
         controller_shape_restart(c);
     } else if (controller_shape_of(c) != NULL) {
-        shape_cycle(controller_shape_of(c), &c->record.set);
+        takt_shape_cycle(controller_shape_of(c), &c->record.set);
     }
 }
 
 /* Is what is sent where the setpoint is? */
 static inline bool controller_shape_is_settled(const struct controller *c)
 {
-    return controller_shape_of(c) == NULL || shape_is_settled(controller_shape_of(c));
+    return controller_shape_of(c) == NULL || takt_shape_is_settled(controller_shape_of(c));
 }
 
 /* What correction has made of the last setpoint. */
 static inline const struct point *controller_shape_input(const struct controller *c)
 {
-    return controller_shape_of(c) == NULL ? &c->record.set : shape_input(controller_shape_of(c));
+    return controller_shape_of(c) == NULL ? &c->record.set
+                                          : takt_shape_input(controller_shape_of(c));
 }
 
 #endif

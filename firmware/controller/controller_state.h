@@ -21,7 +21,7 @@
 #include "replay/replay.h"
 #include "shape/shape.h"
 #include "step/steps.h"
-#include "sync/lock.h"
+#include "sync/spindle_sync.h"
 
 struct controller {
     struct machine machine;
@@ -42,7 +42,7 @@ struct controller {
     struct outputs outputs;
     struct spindle_watch spindle;
     struct tool_changer changer;
-    struct lock lock;               /* threads */
+    struct spindle_sync sync;       /* threads */
     struct outputs_surface surface; /* G96 */
     /* cmd and set also without a program cycle: where the axes stand by the program, and what is sent to the drives */
     struct cycle_record record;

@@ -22,20 +22,20 @@ static void set_config(struct steps_config *config, const struct machine *machin
     }
 }
 
-void controller_steps_init(struct controller *c, const struct step_port *port)
+void takt_controller_steps_init(struct controller *c, const struct step_port *port)
 {
     static const struct point home;
     struct steps_config config;
 
     set_config(&config, &c->machine);
     c->step_port = *port;
-    steps_init(&c->steps, &config, &home);
+    takt_steps_init(&c->steps, &config, &home);
 }
 
 /* The curve the setpoint is on, but for correction. */
 static const struct curve *curve_of(const struct controller *c)
 {
-    const struct block *block = controller_get_block(c);
+    const struct block *block = takt_controller_get_block(c);
 
     if (block == NULL || !move_is_motion(&block->move)) {
         return NULL;
@@ -43,21 +43,21 @@ static const struct curve *curve_of(const struct controller *c)
     return &block->curve;
 }
 
-void controller_steps_cycle(struct controller *c)
+void takt_controller_steps_cycle(struct controller *c)
 {
     const bool stops = c->state == CONTROLLER_STOPPING || c->state == CONTROLLER_FAULTED;
 
     if (!stops &&
-        steps_cycle(&c->steps, &c->step_port, &c->record.set, curve_of(c), c->record.block)) {
+        takt_steps_cycle(&c->steps, &c->step_port, &c->record.set, curve_of(c), c->record.block)) {
         return;
     }
-    if (steps_get_fault(&c->steps)->code != TAKT_OK) {
-        drives_stop_for(&c->drives, steps_get_fault(&c->steps));
+    if (takt_steps_get_fault(&c->steps)->code != TAKT_OK) {
+        takt_drives_stop_for(&c->drives, takt_steps_get_fault(&c->steps));
     }
-    steps_brake(&c->steps, &c->step_port);
+    takt_steps_brake(&c->steps, &c->step_port);
 }
 
-void controller_steps_restart(struct controller *c)
+void takt_controller_steps_restart(struct controller *c)
 {
-    steps_restart(&c->steps);
+    takt_steps_restart(&c->steps);
 }

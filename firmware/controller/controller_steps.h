@@ -7,12 +7,12 @@
 #include "controller/controller.h"
 
 /* The step drives that follow from a machine; they stand at 0. */
-void controller_steps_init(struct controller *c, const struct step_port *port);
+void takt_controller_steps_init(struct controller *c, const struct step_port *port);
 
-/* At the end of every control cycle, after drives_send: the pulses of the next one. */
-void controller_steps_cycle(struct controller *c);
+/* At the end of every control cycle, after takt_drives_send: the pulses of the next one. */
+void takt_controller_steps_cycle(struct controller *c);
 
 /* The drives are being enabled again. */
-void controller_steps_restart(struct controller *c);
+void takt_controller_steps_restart(struct controller *c);
 
 #endif

@@ -93,7 +93,7 @@ static void set_tool(struct outputs *o, const struct move *m)
     }
 }
 
-void outputs_apply(struct outputs *o, struct outputs_surface *surface, const struct move *m)
+void takt_outputs_apply(struct outputs *o, struct outputs_surface *surface, const struct move *m)
 {
     switch (m->kind) {
     case MOVE_SPINDLE:
@@ -139,8 +139,8 @@ void outputs_apply(struct outputs *o, struct outputs_surface *surface, const str
  *
  *     speed = v / (2 pi |x|),   not above its maximum
  */
-void outputs_keep_surface(struct outputs *o, const struct outputs_surface *surface,
-                          const struct point *setpoint)
+void takt_outputs_keep_surface(struct outputs *o, const struct outputs_surface *surface,
+                               const struct point *setpoint)
 {
     const double turn_mm = MATHS_TWO_PI * maths_abs(setpoint->at[AXIS_X] - surface->axis_x_mm);
     const double highest = surface->highest_rpm > 0.0 ? surface->highest_rpm : RPM_MAX;

@@ -20,16 +20,16 @@ struct outputs_surface {
 };
 
 /* An event has been passed. Motions and events without outputs change nothing. */
-void outputs_apply(struct outputs *o, struct outputs_surface *surface, const struct move *m);
+void takt_outputs_apply(struct outputs *o, struct outputs_surface *surface, const struct move *m);
 
 /* Every control cycle: the spindle's speed that belongs to the setpoint, while a surface speed is kept. */
-void outputs_keep_surface(struct outputs *o, const struct outputs_surface *surface,
-                          const struct point *setpoint);
+void takt_outputs_keep_surface(struct outputs *o, const struct outputs_surface *surface,
+                               const struct point *setpoint);
 static inline void outputs_follow(struct outputs *o, const struct outputs_surface *surface,
                                   const struct point *setpoint)
 {
     if (surface->mm_s > 0.0) {
-        outputs_keep_surface(o, surface, setpoint);
+        takt_outputs_keep_surface(o, surface, setpoint);
     }
 }
 

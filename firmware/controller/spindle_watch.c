@@ -10,8 +10,8 @@
 /* Slower than this it stands: 1 rev/min. */
 #define STANDS_REV_S (1.0 / SECONDS_PER_MINUTE)
 
-void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
-                        double at_speed_s)
+void takt_spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
+                             double at_speed_s)
 {
     *w = (struct spindle_watch){.cycle_s = cycle_s,
                                 .smoothing = cycle_s / (SPINDLE_SMOOTH_S + cycle_s),
@@ -21,7 +21,7 @@ void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_lim
                                 .ratio = 1.0};
 }
 
-void spindle_watch_pass(struct spindle_watch *w, const struct move *event)
+void takt_spindle_watch_pass(struct spindle_watch *w, const struct move *event)
 {
     if (event->kind == MOVE_SPINDLE) {
         w->waits = w->at_speed_s > 0.0 && event->direction != SPINDLE_OFF;
@@ -54,7 +54,7 @@ static void follow_speed(struct spindle_watch *w, double speed_rpm)
     }
 }
 
-bool spindle_watch_look(struct spindle_watch *w, const struct spindle_feedback *spindle)
+bool takt_spindle_watch_look(struct spindle_watch *w, const struct spindle_feedback *spindle)
 {
     const bool loads = w->ratio < 1.0 || w->load_limit_percent > 0.0;
 

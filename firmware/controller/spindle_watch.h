@@ -38,18 +38,18 @@ struct spindle_watch {
     double rev_s;              /* as told; 0: it stands */
 };
 
-void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
-                        double at_speed_s);
+void takt_spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
+                             double at_speed_s);
 
 /* Motion has passed an event: a speed that has been commanded is waited for. */
-void spindle_watch_pass(struct spindle_watch *w, const struct move *event);
+void takt_spindle_watch_pass(struct spindle_watch *w, const struct move *event);
 
 /* Every control cycle. False: the speed has not been reached in time. */
-bool spindle_watch_look(struct spindle_watch *w, const struct spindle_feedback *spindle);
+bool takt_spindle_watch_look(struct spindle_watch *w, const struct spindle_feedback *spindle);
 static inline bool spindle_watch_cycle(struct spindle_watch *w,
                                        const struct spindle_feedback *spindle)
 {
-    return (w->rests && spindle->speed_rpm == 0.0) || spindle_watch_look(w, spindle);
+    return (w->rests && spindle->speed_rpm == 0.0) || takt_spindle_watch_look(w, spindle);
 }
 
 #endif

@@ -2,9 +2,9 @@
 
 #include "base/maths.h"
 
-void tool_changer_init(struct tool_changer *t, double cycle_s, double change_s)
+void takt_tool_changer_init(struct tool_changer *t, double cycle_s, double change_s)
 {
-    *t = (struct tool_changer){.most = (uint32_t)maths_ceil(change_s / cycle_s)};
+    *t = (struct tool_changer){.most = (uint32_t)takt_maths_ceil(change_s / cycle_s)};
 }
 
 static enum tool_changer_phase next_phase(enum tool_changer_phase phase, bool is_changed)
@@ -22,7 +22,8 @@ static enum tool_changer_phase next_phase(enum tool_changer_phase phase, bool is
     return CHANGER_DONE;
 }
 
-enum takt_error tool_changer_cycle(struct tool_changer *t, bool stands_at_change, bool is_changed)
+enum takt_error takt_tool_changer_cycle(struct tool_changer *t, bool stands_at_change,
+                                        bool is_changed)
 {
     if (!stands_at_change) {
         t->phase = CHANGER_IDLE;

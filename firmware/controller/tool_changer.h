@@ -24,10 +24,11 @@ struct tool_changer {
     bool is_there;
 };
 
-void tool_changer_init(struct tool_changer *t, double cycle_s, double change_s);
+void takt_tool_changer_init(struct tool_changer *t, double cycle_s, double change_s);
 
 /* After a cycle: the program stands at a change; the answer. TOOL_CHANGE_SLOW: it has taken too long. */
-enum takt_error tool_changer_cycle(struct tool_changer *t, bool stands_at_change, bool is_changed);
+enum takt_error takt_tool_changer_cycle(struct tool_changer *t, bool stands_at_change,
+                                        bool is_changed);
 
 static inline bool tool_changer_asks(const struct tool_changer *t)
 {

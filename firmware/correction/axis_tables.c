@@ -39,15 +39,15 @@ static float pair_value(const struct axis_tables *tables, const struct axis_pair
     double t = position - knot[0];
 
     if ((t < 0.0 && at == 0) || (t > width && at + 2U == pair->points)) {
-        t = width * edge_hold(t / width, 1.0, outside);
+        t = width * takt_edge_hold(t / width, 1.0, outside);
     }
     const float mean = evaluate(piece->mean, (float)t);
 
     return pair->directed ? mean + approach * evaluate(piece->half, (float)t) : mean;
 }
 
-unsigned axis_tables_sum(const struct axis_tables *tables, const struct point *at,
-                         const float approach[AXIS_COUNT], float weight, float k[AXIS_COUNT])
+unsigned takt_axis_tables_sum(const struct axis_tables *tables, const struct point *at,
+                              const float approach[AXIS_COUNT], float weight, float k[AXIS_COUNT])
 {
     unsigned outside = 0;
 
@@ -66,7 +66,7 @@ unsigned axis_tables_sum(const struct axis_tables *tables, const struct point *a
 
 static bool refuse(struct diagnostic *wrong, enum takt_error code, uint8_t axis, double value)
 {
-    diagnostic_set(wrong, code, 0, 0, &AXIS_LETTERS[axis], 1, value);
+    takt_diagnostic_set(wrong, code, 0, 0, &AXIS_LETTERS[axis], 1, value);
     return false;
 }
 
@@ -116,8 +116,8 @@ static void set_pieces(struct axis_tables *tables, const struct axis_pair *pair,
         half[i] = 0.5 * ((double)row[up] - (double)row[down]);
         tables->own_knot_mm[pair->first + i] = table->knot_mm[0][i];
     }
-    spline_set_bends(pair->points, table->knot_mm[0], mean, mean_bend);
-    spline_set_bends(pair->points, table->knot_mm[0], half, half_bend);
+    takt_spline_set_bends(pair->points, table->knot_mm[0], mean, mean_bend);
+    takt_spline_set_bends(pair->points, table->knot_mm[0], half, half_bend);
     for (unsigned i = 0; i + 1U < pair->points; i++) {
         struct axis_piece *piece = &tables->own_piece[pair->first + i];
 
@@ -149,7 +149,7 @@ static bool check_room(const struct axis_tables *tables, const struct table *tab
     uint32_t points = tables->points;
 
     if (table->inputs != 1) {
-        diagnostic_set(wrong, TAKT_ERROR_TABLE_KIND, 0, 0, "", 0, table->inputs);
+        takt_diagnostic_set(wrong, TAKT_ERROR_TABLE_KIND, 0, 0, "", 0, table->inputs);
         return false;
     }
     for (unsigned i = 0; i < table->outputs; i++) {
@@ -166,8 +166,8 @@ static bool check_room(const struct axis_tables *tables, const struct table *tab
            refuse(wrong, TAKT_ERROR_TABLE_PAIRS_MANY, table->input[0], AXIS_TABLES_PAIRS_MAX);
 }
 
-bool axis_tables_add(struct axis_tables *tables, const struct table *table,
-                     struct diagnostic *wrong)
+bool takt_axis_tables_add(struct axis_tables *tables, const struct table *table,
+                          struct diagnostic *wrong)
 {
     if (!check_room(tables, table, wrong)) {
         return false;

@@ -44,25 +44,25 @@ struct axis_tables {
 };
 
 /*
- * Adds a table over one axis, which has passed table_check; tables must not be moved afterwards. False: *wrong says why,
+ * Adds a table over one axis, which has passed takt_table_check; tables must not be moved afterwards. False: *wrong says why,
  * and nothing has changed.
  */
-bool axis_tables_add(struct axis_tables *tables, const struct table *table,
-                     struct diagnostic *wrong);
+bool takt_axis_tables_add(struct axis_tables *tables, const struct table *table,
+                          struct diagnostic *wrong);
 
 /*
  * Adds weight times the corrections at a point to k, by axis. approach: of each axis, 1 when it comes from below, -1 from
  * above, between them while one fades into the other. Returns the inputs that are outside: bit i for axis i.
  */
-unsigned axis_tables_sum(const struct axis_tables *tables, const struct point *at,
-                         const float approach[AXIS_COUNT], float weight, float k[AXIS_COUNT]);
+unsigned takt_axis_tables_sum(const struct axis_tables *tables, const struct point *at,
+                              const float approach[AXIS_COUNT], float weight, float k[AXIS_COUNT]);
 
 /* A number between -1 and 1 that fades: the most it does. */
 struct approach_bound {
     double velocity_per_s, acceleration_per_s2, jerk_per_s3;
 };
 
-void axis_tables_need(const struct axis_tables *tables, const struct approach_bound *approach,
-                      const struct motion_bound *most, struct need *need);
+void takt_axis_tables_need(const struct axis_tables *tables, const struct approach_bound *approach,
+                           const struct motion_bound *most, struct need *need);
 
 #endif

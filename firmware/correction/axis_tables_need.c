@@ -43,7 +43,7 @@ static void add_pair(const struct axis_pair *pair, const struct cubic_bound *bou
 
     need->size_mm[pair->corrected] += bound->size;
     need->noise_mm[pair->corrected] += NEED_ROUNDING * bound->size;
-    need_add_slope(need, pair->corrected, pair->input, bound->first, most);
+    takt_need_add_slope(need, pair->corrected, pair->input, bound->first, most);
     need->velocity_mm_s[pair->corrected] += a->velocity_per_s * bound->size;
     need->acceleration_mm_s2[pair->corrected] += NEED_MARGIN * bound->second * v * v +
                                                  2.0 * a->velocity_per_s * slope_s +
@@ -55,8 +55,8 @@ static void add_pair(const struct axis_pair *pair, const struct cubic_bound *bou
         a->jerk_per_s3 * bound->size;
 }
 
-void axis_tables_need(const struct axis_tables *tables, const struct approach_bound *approach,
-                      const struct motion_bound *most, struct need *need)
+void takt_axis_tables_need(const struct axis_tables *tables, const struct approach_bound *approach,
+                           const struct motion_bound *most, struct need *need)
 {
     static const struct approach_bound still = {0.0, 0.0, 0.0};
 

@@ -8,11 +8,11 @@
 #include <assert.h>
 #include <string.h>
 
-#define CORRECTION_DECLARE(NAME, name) extern const struct correction_layer layer_##name;
+#define CORRECTION_DECLARE(NAME, name) extern const struct correction_layer takt_layer_##name;
 CORRECTION_LAYERS(CORRECTION_DECLARE)
 #undef CORRECTION_DECLARE
 
-#define CORRECTION_LIST(NAME, name) &layer_##name,
+#define CORRECTION_LIST(NAME, name) &takt_layer_##name,
 static const struct correction_layer *const layers[] = {CORRECTION_LAYERS(CORRECTION_LIST)};
 #undef CORRECTION_LIST
 
@@ -21,7 +21,7 @@ static_assert(CORRECTION_LAYERS_COUNT <= 8, "a move has a byte for the layers a 
 /* The layers that read tables. */
 #define LAYERS_OF_TABLES (1U << CORRECTION_AXES | 1U << CORRECTION_VOLUME)
 
-void correction_settings_set_default(struct correction_settings *settings)
+void takt_correction_settings_set_default(struct correction_settings *settings)
 {
     memset(settings, 0, sizeof(*settings));
     settings->largest_mm = 1.0;
@@ -33,15 +33,15 @@ void correction_settings_set_default(struct correction_settings *settings)
     settings->tool_direction[AXIS_Z] = 1.0;
 }
 
-void correction_table_rules(const struct correction_settings *settings, unsigned axes,
-                            struct table_rules *rules)
+void takt_correction_table_rules(const struct correction_settings *settings, unsigned axes,
+                                 struct table_rules *rules)
 {
     rules->axes = axes;
     rules->largest_mm = settings->largest_mm;
     rules->steepest_ratio = settings->steepest_ratio;
 }
 
-unsigned correction_axis_of(const struct correction *c, unsigned coordinate)
+unsigned takt_correction_axis_of(const struct correction *c, unsigned coordinate)
 {
     return coordinate < AXIS_LINEAR_COUNT ? coordinate : c->settings.turn_axis;
 }
@@ -63,7 +63,7 @@ static void begin_layer(struct correction *c, unsigned i)
     }
 }
 
-void correction_restart(struct correction *c, const struct point *start)
+void takt_correction_restart(struct correction *c, const struct point *start)
 {
     c->at = start;
     c->fading = c->running = c->program_off = 0;
@@ -74,9 +74,9 @@ void correction_restart(struct correction *c, const struct point *start)
     c->at = NULL;
 }
 
-void correction_init(struct correction *c, const struct correction_settings *settings,
-                     unsigned axes, double cycle_s, const struct correction_tables *tables,
-                     const struct point *start)
+void takt_correction_init(struct correction *c, const struct correction_settings *settings,
+                          unsigned axes, double cycle_s, const struct correction_tables *tables,
+                          const struct point *start)
 {
     memset(c, 0, sizeof(*c));
     c->settings = *settings;
@@ -87,10 +87,10 @@ void correction_init(struct correction *c, const struct correction_settings *set
     c->cycle_s = cycle_s;
     c->tables = tables;
     c->off = settings->off;
-    fade_pace_set(&c->layer_pace, settings->fade_s, cycle_s);
-    fade_pace_set(&c->reversal_pace, settings->reversal_fade_s, cycle_s);
-    correction_forget_setup(c);
-    correction_restart(c, start);
+    takt_fade_pace_set(&c->layer_pace, settings->fade_s, cycle_s);
+    takt_fade_pace_set(&c->reversal_pace, settings->reversal_fade_s, cycle_s);
+    takt_correction_forget_setup(c);
+    takt_correction_restart(c, start);
 }
 
 /* ---- the control cycle ---- */
@@ -151,7 +151,7 @@ static __attribute__((noinline)) void exchange_tables(struct correction *c)
 static void exchange_setup(struct correction *c)
 {
     const unsigned bit = 1U << CORRECTION_SETUP;
-    const bool any = setup_exchange(c, &c->notes[CORRECTION_SETUP]);
+    const bool any = takt_setup_exchange(c, &c->notes[CORRECTION_SETUP]);
 
     c->present = any ? c->present | bit : c->present & ~bit;
     handoff_order();
@@ -186,8 +186,8 @@ static void add_layers(struct correction *c, struct point *set)
     c->outside |= sum.outside;
 }
 
-void correction_cycle(struct correction *c, const struct point *cmd, const struct move *move,
-                      struct point *set)
+void takt_correction_cycle(struct correction *c, const struct point *cmd, const struct move *move,
+                           struct point *set)
 {
     *set = *cmd;
     if (c->present == 0 && c->pending == NULL && !c->setup_waits) {
@@ -216,11 +216,11 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
     }
 }
 
-void correction_stand(struct correction *c, const struct point *cmd, struct point *set)
+void takt_correction_stand(struct correction *c, const struct point *cmd, struct point *set)
 {
     static const struct move standing = {.kind = MOVE_DWELL};
 
-    correction_cycle(c, cmd, &standing, set);
+    takt_correction_cycle(c, cmd, &standing, set);
 }
 
 /* A layer as it is when everything has settled. */
@@ -240,8 +240,8 @@ static void add_settled(struct correction *c, unsigned i, struct correction_sum 
     layers[i]->add(c, notes, 1.0, sum);
 }
 
-void correction_evaluate(const struct correction *c, const struct point *at,
-                         const struct move *move, struct point *k)
+void takt_correction_evaluate(const struct correction *c, const struct point *at,
+                              const struct move *move, struct point *k)
 {
     struct correction settled = *c;
     struct correction_sum sum;
@@ -263,37 +263,37 @@ void correction_evaluate(const struct correction *c, const struct point *at,
 
 /* ---- what others set and ask ---- */
 
-void correction_switch(struct correction *c, enum correction_layer_number layer, bool on)
+void takt_correction_switch(struct correction *c, enum correction_layer_number layer, bool on)
 {
     c->off = on ? c->off & ~(1U << layer) : c->off | 1U << layer;
 }
 
-void correction_set_rise(struct correction *c, enum axis axis, double rise_k)
+void takt_correction_set_rise(struct correction *c, enum axis axis, double rise_k)
 {
     c->rise_k[axis] = rise_k;
 }
 
-bool correction_is_loading(const struct correction *c)
+bool takt_correction_is_loading(const struct correction *c)
 {
     return c->pending != NULL;
 }
 
-unsigned correction_get_running(const struct correction *c)
+unsigned takt_correction_get_running(const struct correction *c)
 {
     return c->running | c->fading;
 }
 
-unsigned correction_get_present(const struct correction *c)
+unsigned takt_correction_get_present(const struct correction *c)
 {
     return c->present;
 }
 
-const char *correction_layer_name(enum correction_layer_number layer)
+const char *takt_correction_layer_name(enum correction_layer_number layer)
 {
     return layers[layer]->name;
 }
 
-unsigned correction_take_outside(struct correction *c)
+unsigned takt_correction_take_outside(struct correction *c)
 {
     const unsigned outside = c->outside;
 
@@ -307,9 +307,9 @@ unsigned correction_take_outside(struct correction *c)
 static void add_faded(struct need *sum, const struct need *k, const struct fade_pace *pace,
                       unsigned i)
 {
-    const double w1 = fade_velocity_per_s(pace);
-    const double w2 = fade_acceleration_per_s2(pace);
-    const double w3 = fade_jerk_per_s3(pace);
+    const double w1 = takt_fade_velocity_per_s(pace);
+    const double w2 = takt_fade_acceleration_per_s2(pace);
+    const double w3 = takt_fade_jerk_per_s3(pace);
 
     sum->size_mm[i] += k->size_mm[i];
     sum->noise_mm[i] += k->noise_mm[i];
@@ -345,7 +345,7 @@ static void weigh(const struct correction *c, const struct setup *next,
         }
         memset(&of_layer, 0, sizeof(of_layer));
         if (i == CORRECTION_SETUP && next != NULL) {
-            setup_need(c, next, most, &of_layer);
+            takt_setup_need(c, next, most, &of_layer);
         } else {
             layers[i]->need(c, &c->notes[i], most, &of_layer);
         }
@@ -358,8 +358,8 @@ static void weigh(const struct correction *c, const struct setup *next,
     }
 }
 
-void correction_get_need(const struct correction *c, const struct motion_bound *most,
-                         struct need *need)
+void takt_correction_get_need(const struct correction *c, const struct motion_bound *most,
+                              struct need *need)
 {
     weigh(c, NULL, most, need);
 }
@@ -369,7 +369,8 @@ static void raise(double *value, double least)
     *value = maths_max(*value, least);
 }
 
-void correction_reserve(struct correction *c, const struct motion_bound *most, struct need *need)
+void takt_correction_reserve(struct correction *c, const struct motion_bound *most,
+                             struct need *need)
 {
     const double reserve = c->settings.reserve_ratio;
 
@@ -377,7 +378,7 @@ void correction_reserve(struct correction *c, const struct motion_bound *most, s
         *need = c->reserved;
         return;
     }
-    correction_get_need(c, most, need);
+    takt_correction_get_need(c, most, need);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         raise(&need->velocity_mm_s[i], reserve * most->velocity_mm_s[i]);
         raise(&need->acceleration_mm_s2[i], reserve * most->acceleration_mm_s2[i]);
@@ -393,8 +394,8 @@ static double share_of(double need, double most)
     return most > 0.0 ? need / most : 0.0;
 }
 
-double correction_largest_share(const struct need *need, const struct motion_bound *most,
-                                enum axis *axis)
+double takt_correction_largest_share(const struct need *need, const struct motion_bound *most,
+                                     enum axis *axis)
 {
     double largest = 0.0;
 
@@ -423,7 +424,7 @@ static void need_with(const struct correction *c, const struct correction_tables
     other.tables = tables;
     begin_layer(&other, CORRECTION_AXES);
     begin_layer(&other, CORRECTION_VOLUME);
-    correction_get_need(&other, &c->most, need);
+    takt_correction_get_need(&other, &c->most, need);
 }
 
 /* More than was reserved, on some axis? */
@@ -439,18 +440,18 @@ static bool exceeds_reserve(const struct correction *c, const struct need *need)
     return false;
 }
 
-bool correction_load(struct correction *c, const struct correction_tables *tables,
-                     struct diagnostic *wrong)
+bool takt_correction_load(struct correction *c, const struct correction_tables *tables,
+                          struct diagnostic *wrong)
 {
     struct need need;
 
     need_with(c, tables, &need);
     if (exceeds_reserve(c, &need)) {
         enum axis axis;
-        const double share = correction_largest_share(&need, &c->most, &axis);
+        const double share = takt_correction_largest_share(&need, &c->most, &axis);
 
-        diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
-                       100.0 * share);
+        takt_diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
+                            100.0 * share);
         return false;
     }
     c->pending = tables;
@@ -459,35 +460,35 @@ bool correction_load(struct correction *c, const struct correction_tables *table
 
 /* ---- the set-up of the part ---- */
 
-void correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
+void takt_correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
 {
     if (c->setup_waits) {
         memcpy(number, c->setup_next.number, sizeof(c->setup_next.number));
     } else {
-        setup_get_numbers(c, number);
+        takt_setup_get_numbers(c, number);
     }
 }
 
-void correction_forget_setup(struct correction *c)
+void takt_correction_forget_setup(struct correction *c)
 {
-    correction_get_setup(c, c->setup_told);
+    takt_correction_get_setup(c, c->setup_told);
 }
 
-void correction_tell_setup(struct correction *c, unsigned which, double value)
+void takt_correction_tell_setup(struct correction *c, unsigned which, double value)
 {
     c->setup_told[which] = value;
 }
 
-bool correction_take_setup(struct correction *c)
+bool takt_correction_take_setup(struct correction *c)
 {
     struct need need;
 
     assert(!c->setup_waits);
     memcpy(c->setup_next.number, c->setup_told, sizeof(c->setup_told));
-    setup_prepare(&c->setup_next);
+    takt_setup_prepare(&c->setup_next);
     weigh(c, &c->setup_next, &c->most, &need);
     if (exceeds_reserve(c, &need)) {
-        correction_forget_setup(c);
+        takt_correction_forget_setup(c);
         return false;
     }
     handoff_order();
@@ -495,18 +496,18 @@ bool correction_take_setup(struct correction *c)
     return true;
 }
 
-bool correction_is_setting_up(const struct correction *c)
+bool takt_correction_is_setting_up(const struct correction *c)
 {
     const unsigned bit = 1U << CORRECTION_SETUP;
 
     return c->setup_waits || ((c->fading | (wanted(c) ^ c->running)) & bit) != 0;
 }
 
-bool correction_is_set_up(const struct correction *c)
+bool takt_correction_is_set_up(const struct correction *c)
 {
     double number[CORRECTION_SETUP_VALUES];
 
-    correction_get_setup(c, number);
+    takt_correction_get_setup(c, number);
     for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
         if (number[i] != c->setup_told[i]) {
             return false;
@@ -515,7 +516,7 @@ bool correction_is_set_up(const struct correction *c)
     return true;
 }
 
-void correction_settle_setup(struct correction *c)
+void takt_correction_settle_setup(struct correction *c)
 {
     if (c->setup_waits) {
         exchange_setup(c);

@@ -1,6 +1,6 @@
 #include "correction/edge.h"
 
-double edge_hold(double position, double last, unsigned *outside)
+double takt_edge_hold(double position, double last, unsigned *outside)
 {
     if (position >= 0.0 && position <= last) {
         return position;

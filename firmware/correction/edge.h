@@ -16,6 +16,6 @@
 #define EDGE_THIRD_MAX  36.0
 
 /* position in steps, of a table that goes from 0 to last. *outside is set when it is beyond an end. */
-double edge_hold(double position, double last, unsigned *outside);
+double takt_edge_hold(double position, double last, unsigned *outside);
 
 #endif

@@ -19,7 +19,7 @@
 #define FADE_ACCELERATION_MAX 0.33
 #define FADE_JERK_MAX         1.3
 
-void fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s)
+void takt_fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s)
 {
     pace->cycle_s = cycle_s;
     pace->rate = FADE_DONE_X * cycle_s / maths_max(time_s, FADE_CYCLES_MIN * cycle_s);
@@ -30,17 +30,17 @@ static double per_s(const struct fade_pace *pace)
     return pace->rate / pace->cycle_s;
 }
 
-double fade_velocity_per_s(const struct fade_pace *pace)
+double takt_fade_velocity_per_s(const struct fade_pace *pace)
 {
     return FADE_VELOCITY_MAX * per_s(pace);
 }
 
-double fade_acceleration_per_s2(const struct fade_pace *pace)
+double takt_fade_acceleration_per_s2(const struct fade_pace *pace)
 {
     return FADE_ACCELERATION_MAX * per_s(pace) * per_s(pace);
 }
 
-double fade_jerk_per_s3(const struct fade_pace *pace)
+double takt_fade_jerk_per_s3(const struct fade_pace *pace)
 {
     return FADE_JERK_MAX * per_s(pace) * per_s(pace) * per_s(pace);
 }

@@ -26,7 +26,7 @@ struct fade_pace {
 #define FADE_CYCLES_MIN 40
 
 /* time_s: until 99 % of a step are done; at least FADE_CYCLES_MIN cycles are taken. */
-void fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s);
+void takt_fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s);
 
 /* Nearer than this the value is taken for its target: far below a drive's increment, whatever it is multiplied by. */
 #define FADE_NEAR 1e-9
@@ -59,8 +59,8 @@ static inline bool fade_is_at(const struct fade *f, double target)
 }
 
 /* Largest velocity, acceleration and jerk of the value for a target that jumps between 0 and 1 at any times. */
-double fade_velocity_per_s(const struct fade_pace *pace);
-double fade_acceleration_per_s2(const struct fade_pace *pace);
-double fade_jerk_per_s3(const struct fade_pace *pace);
+double takt_fade_velocity_per_s(const struct fade_pace *pace);
+double takt_fade_acceleration_per_s2(const struct fade_pace *pace);
+double takt_fade_jerk_per_s3(const struct fade_pace *pace);
 
 #endif

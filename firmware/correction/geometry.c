@@ -35,21 +35,21 @@ static bool carries_tool(const struct geometry *g, unsigned unit)
     return unit < g->chain.tool_units;
 }
 
-void geometry_init(struct geometry *g)
+void takt_geometry_init(struct geometry *g)
 {
     memset(g, 0, sizeof(*g));
-    g->take_back = geometry_take_back;
-    g->need = geometry_need;
+    g->take_back = takt_geometry_take_back;
+    g->need = takt_geometry_need;
 }
 
-bool geometry_add(struct geometry *g, const struct table *table, struct diagnostic *wrong)
+bool takt_geometry_add(struct geometry *g, const struct table *table, struct diagnostic *wrong)
 {
     for (unsigned u = 0; u < g->chain.units && table->errors; u++) {
         if (table->input[0] == g->chain.axis[u]) {
-            return axis_tables_add(&g->errors[u], table, wrong);
+            return takt_axis_tables_add(&g->errors[u], table, wrong);
         }
     }
-    diagnostic_set(wrong, TAKT_ERROR_TABLE_UNIT, 0, 0, &AXIS_LETTERS[table->input[0]], 1, 0.0);
+    takt_diagnostic_set(wrong, TAKT_ERROR_TABLE_UNIT, 0, 0, &AXIS_LETTERS[table->input[0]], 1, 0.0);
     return false;
 }
 
@@ -71,7 +71,7 @@ static unsigned errors_of(const struct geometry *g, unsigned unit, const struct 
 {
     static const float no_direction[AXIS_COUNT] = {0.0F};
     float k[AXIS_COUNT] = {0.0F};
-    const unsigned outside = axis_tables_sum(&g->errors[unit], at, no_direction, 1.0F, k);
+    const unsigned outside = takt_axis_tables_sum(&g->errors[unit], at, no_direction, 1.0F, k);
 
     for (unsigned i = 0; i < ERRORS; i++) {
         e[i] = (double)k[i];
@@ -94,8 +94,8 @@ static void add_turning(const struct geometry *g, unsigned unit, const struct po
     add_moved(deviation, -1.0, e, e + SIDE, arm);
 }
 
-unsigned geometry_deviation(const struct geometry *g, const struct point *at,
-                            double deviation[AXIS_COUNT])
+unsigned takt_geometry_deviation(const struct geometry *g, const struct point *at,
+                                 double deviation[AXIS_COUNT])
 {
     double arm[SIDE];
     unsigned outside = 0;
@@ -125,11 +125,11 @@ unsigned geometry_deviation(const struct geometry *g, const struct point *at,
     return outside;
 }
 
-unsigned geometry_take_back(const struct geometry *g, const struct point *at, double weight,
-                            unsigned axes_end, float k[AXIS_COUNT])
+unsigned takt_geometry_take_back(const struct geometry *g, const struct point *at, double weight,
+                                 unsigned axes_end, float k[AXIS_COUNT])
 {
     double deviation[AXIS_COUNT];
-    const unsigned outside = geometry_deviation(g, at, deviation);
+    const unsigned outside = takt_geometry_deviation(g, at, deviation);
 
     for (unsigned i = 0; i < axes_end; i++) {
         k[i] -= (float)(weight * deviation[i]);
@@ -157,9 +157,9 @@ static void add_unit(const struct need *errors, const struct need_jet arm[SIDE],
         const struct need_jet about_j = jet_of(errors, SIDE + j);
         const struct need_jet about_k = jet_of(errors, SIDE + k);
 
-        need_add_product(need, i, &shift, &one);
-        need_add_product(need, i, &about_j, &arm[k]);
-        need_add_product(need, i, &about_k, &arm[j]);
+        takt_need_add_product(need, i, &shift, &one);
+        takt_need_add_product(need, i, &about_j, &arm[k]);
+        takt_need_add_product(need, i, &about_k, &arm[j]);
     }
 }
 
@@ -169,7 +169,7 @@ static void add_own_turn(struct need *errors, unsigned axis, struct need *need)
     static const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
     const struct need_jet turn = jet_of(errors, axis);
 
-    need_add_product(need, axis, &turn, &one);
+    takt_need_add_product(need, axis, &turn, &one);
     errors->size_mm[axis] = errors->velocity_mm_s[axis] = 0.0;
     errors->acceleration_mm_s2[axis] = errors->jerk_mm_s3[axis] = 0.0;
 }
@@ -181,7 +181,7 @@ static void add_leans(const struct geometry *g, const struct motion_bound *most,
         const double slope = maths_abs(g->squareness_rad[l->angle]);
         const double size = slope * most->farthest_mm[l->axis];
 
-        need_add_slope(need, l->moved, l->axis, slope, most);
+        takt_need_add_slope(need, l->moved, l->axis, slope, most);
         need->size_mm[l->moved] += size;
         need->noise_mm[l->moved] += NEED_ROUNDING * size;
     }
@@ -193,11 +193,12 @@ static void set_turning_arms(const struct geometry *g, const struct motion_bound
 {
     for (unsigned i = 0; i < SIDE; i++) {
         arm[i] = (struct need_jet){{maths_abs(g->centre_mm[i]), 0.0, 0.0, 0.0}};
-        need_jet_add_travel(&arm[i], most, i);
+        takt_need_jet_add_travel(&arm[i], most, i);
     }
 }
 
-void geometry_need(const struct geometry *g, const struct motion_bound *most, struct need *need)
+void takt_geometry_need(const struct geometry *g, const struct motion_bound *most,
+                        struct need *need)
 {
     static const struct approach_bound still = {0.0, 0.0, 0.0};
     struct need_jet arm[SIDE];
@@ -210,16 +211,16 @@ void geometry_need(const struct geometry *g, const struct motion_bound *most, st
         struct need errors;
 
         memset(&errors, 0, sizeof(errors));
-        axis_tables_need(&g->errors[u], &still, most, &errors);
+        takt_axis_tables_need(&g->errors[u], &still, most, &errors);
         if (is_turning(g, u)) {
             add_own_turn(&errors, axis, need);
             set_turning_arms(g, most, arm);
         } else if (!carries_tool(g, u)) {
-            need_jet_add_travel(&arm[axis], most, axis);
+            takt_need_jet_add_travel(&arm[axis], most, axis);
         }
         add_unit(&errors, arm, need);
         if (!is_turning(g, u) && carries_tool(g, u)) {
-            need_jet_add_travel(&arm[axis], most, axis);
+            takt_need_jet_add_travel(&arm[axis], most, axis);
         }
     }
     add_leans(g, most, need);

@@ -24,30 +24,31 @@ struct geometry {
     /* of Y to X about Z (C0Y), of Z to X about Y (B0Z), of Z to Y about X (A0Z): as ISO 230-1 has them */
     double squareness_rad[AXIS_LINEAR_COUNT];
     struct axis_tables errors[UNIT_CHAIN_MAX]; /* of each unit; count 0: it has none */
-    /* Those below, by geometry_init: an image in which no machine has errors of units is without their code. */
+    /* Those below, by takt_geometry_init: an image in which no machine has errors of units is without their code. */
     unsigned (*take_back)(const struct geometry *g, const struct point *at, double weight,
                           unsigned axes_end, float k[AXIS_COUNT]);
     void (*need)(const struct geometry *g, const struct motion_bound *most, struct need *need);
 };
 
 /* No errors yet; whatever else it holds is for the caller to set. */
-void geometry_init(struct geometry *g);
+void takt_geometry_init(struct geometry *g);
 
 /* Takes a table of a unit's errors (E columns). The chain is set; *g must not be moved. False: *wrong says why. */
-bool geometry_add(struct geometry *g, const struct table *table, struct diagnostic *wrong);
+bool takt_geometry_add(struct geometry *g, const struct table *table, struct diagnostic *wrong);
 
 /*
  * How far the tool's point is off the commanded place, as seen from the part with its table where it is commanded; and
  * how far the turning unit is off. Returns the inputs that are outside of their tables: bit i for axis i.
  */
-unsigned geometry_deviation(const struct geometry *g, const struct point *at,
-                            double deviation[AXIS_COUNT]);
+unsigned takt_geometry_deviation(const struct geometry *g, const struct point *at,
+                                 double deviation[AXIS_COUNT]);
 
 /* Takes these deviations, by weight, from the corrections of the axes before axes_end. Returns the same. */
-unsigned geometry_take_back(const struct geometry *g, const struct point *at, double weight,
-                            unsigned axes_end, float k[AXIS_COUNT]);
+unsigned takt_geometry_take_back(const struct geometry *g, const struct point *at, double weight,
+                                 unsigned axes_end, float k[AXIS_COUNT]);
 
 /* Adds what taking these deviations back takes of the axes. */
-void geometry_need(const struct geometry *g, const struct motion_bound *most, struct need *need);
+void takt_geometry_need(const struct geometry *g, const struct motion_bound *most,
+                        struct need *need);
 
 #endif

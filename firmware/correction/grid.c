@@ -13,7 +13,7 @@ static __attribute__((noinline)) size_t find_edge_cell(const struct grid_input *
                                                        double position, float *t, unsigned *outside)
 {
     unsigned beyond = 0;
-    const double held = edge_hold(position, input->last, &beyond);
+    const double held = takt_edge_hold(position, input->last, &beyond);
     const uint32_t cell = held < 1.0 ? 0 : input->last_cell;
 
     *t = (float)(held - (double)cell);
@@ -21,8 +21,8 @@ static __attribute__((noinline)) size_t find_edge_cell(const struct grid_input *
     return cell * input->stride;
 }
 
-size_t grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
-                      unsigned *outside)
+size_t takt_grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
+                           unsigned *outside)
 {
     const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
 
@@ -36,7 +36,7 @@ size_t grid_find_cell(const struct grid_input *input, const struct point *at, fl
 }
 
 /* As c0 + t (c1 + t (c2 + t c3)). */
-void grid_set_weights(float t, float weight[STENCIL])
+void takt_grid_set_weights(float t, float weight[STENCIL])
 {
     weight[0] = 1.0F / 6.0F + t * (-0.5F + t * (0.5F - t * (1.0F / 6.0F)));
     weight[1] = 4.0F / 6.0F + t * t * (-1.0F + t * 0.5F);
@@ -95,8 +95,8 @@ static unsigned add_three(const struct grid *grid, const struct point *at, float
 
     place.first = 0;
     for (unsigned i = 0; i < 3; i++) {
-        place.first += grid_find_cell(&grid->input[i], at, &t, &outside);
-        grid_set_weights(t, place.weight[i]);
+        place.first += takt_grid_find_cell(&grid->input[i], at, &t, &outside);
+        takt_grid_set_weights(t, place.weight[i]);
     }
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         k[i] += weight * add_planes(grid, grid->coefficient + place.first + i * grid->size, &place);
@@ -156,8 +156,8 @@ static unsigned add_any(const struct grid *grid, const struct point *at, float w
     float t;
 
     for (unsigned i = 0; i < grid->inputs; i++) {
-        place.first += grid_find_cell(&grid->input[i], at, &t, &outside);
-        grid_set_weights(t, place.weight[i]);
+        place.first += takt_grid_find_cell(&grid->input[i], at, &t, &outside);
+        takt_grid_set_weights(t, place.weight[i]);
     }
     sum_any(grid, &place, components, sum);
     for (unsigned i = 0; i < components; i++) {
@@ -166,8 +166,8 @@ static unsigned add_any(const struct grid *grid, const struct point *at, float w
     return outside;
 }
 
-unsigned grid_add(const struct grid *grid, const struct point *at, float weight,
-                  float k[AXIS_COUNT])
+unsigned takt_grid_add(const struct grid *grid, const struct point *at, float weight,
+                       float k[AXIS_COUNT])
 {
     if (grid->inputs == 3 && grid->turn_axis == AXIS_COUNT) {
         return add_three(grid, at, weight, k);

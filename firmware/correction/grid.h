@@ -34,7 +34,7 @@ struct grid_input {
     float mm_per_step;
 };
 
-/* Derivatives up to the third order, by any of four inputs: so many are told apart. */
+/* Number of different derivatives up to the third order, by any of four inputs. */
 #define GRID_ORDERS 35
 
 struct grid {
@@ -44,24 +44,24 @@ struct grid {
         turn_axis; /* enum axis that component 3 corrects; AXIS_COUNT: none. The others are X, Y, Z */
     size_t size;   /* coefficients of one component */
     float bound[GRID_COMPONENTS][GRID_ORDERS]; /* of derivatives: grid_bound.h */
-    /* For patches (grid_patch.h), which grid_patch_set_pace sets. */
+    /* For patches (grid_patch.h), which takt_grid_patch_set_pace sets. */
     float reach;   /* steps from where one is made to where it is good, all inputs together */
     float fastest; /* steps a cycle that they can follow, likewise */
     uint8_t ready; /* the stage in which one is ready */
     struct grid_input input[TABLE_INPUTS_MAX]; /* the first has stride 1 */
     const float *coefficient;         /* component by component: own, or where they are stored */
-    float own[GRID_COEFFICIENTS_MAX]; /* of a spline that grid_set has made */
+    float own[GRID_COEFFICIENTS_MAX]; /* of a spline that takt_grid_set has made */
 };
 
-/* Makes the spline; grid must not be moved afterwards. table has passed table_check. False: it does not fit; *wrong says why. */
-bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong);
+/* Makes the spline; grid must not be moved afterwards. table has passed takt_table_check. False: it does not fit; *wrong says why. */
+bool takt_grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong);
 
 /* Adds weight times the corrections at a point to k, by axis. Returns the inputs that are outside: bit i for axis i. */
-unsigned grid_add(const struct grid *grid, const struct point *at, float weight,
-                  float k[AXIS_COUNT]);
+unsigned takt_grid_add(const struct grid *grid, const struct point *at, float weight,
+                       float k[AXIS_COUNT]);
 
 /* Adds what following the table takes of the axes, with commanded motion up to most. */
-void grid_need(const struct grid *grid, const struct motion_bound *most, double cycle_s,
-               struct need *need);
+void takt_grid_need(const struct grid *grid, const struct motion_bound *most, double cycle_s,
+                    struct need *need);
 
 #endif

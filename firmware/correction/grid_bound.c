@@ -12,7 +12,7 @@ struct grid_order {
 /* (-1)^(n-i) over i of n, of differences of up to third order. */
 static const float binomial[4][4] = {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}};
 
-/* What is summed along an input: so many coefficients, from one that stands a little before or at the place. */
+/* What is summed along an input: count coefficients, from one that stands a little before or at the place. */
 struct taps {
     unsigned count;
     unsigned before;
@@ -170,7 +170,7 @@ static void bound_component(struct grid *grid, unsigned component)
     }
 }
 
-void grid_bound_all(struct grid *grid)
+void takt_grid_bound_all(struct grid *grid)
 {
     for (unsigned i = 0; i < GRID_COMPONENTS; i++) {
         if (((unsigned)grid->components >> i & 1U) != 0) {
@@ -179,19 +179,20 @@ void grid_bound_all(struct grid *grid)
     }
 }
 
-float grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b, unsigned c)
+float takt_grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b,
+                      unsigned c)
 {
     return grid->bound[component][index_of(a, b, c)];
 }
 
-float grid_bound_third(const struct grid *grid, unsigned component)
+float takt_grid_bound_third(const struct grid *grid, unsigned component)
 {
     float most = 0.0F;
 
     for (unsigned c = 0; c < grid->inputs; c++) {
         for (unsigned b = 0; b <= c; b++) {
             for (unsigned a = 0; a <= b; a++) {
-                const float third = grid_bound(grid, component, a, b, c);
+                const float third = takt_grid_bound(grid, component, a, b, c);
 
                 most = third > most ? third : most;
             }

@@ -11,12 +11,13 @@
 #define GRID_NO_INPUT TABLE_INPUTS_MAX
 
 /* Fills grid->bound. To be called when coefficients and inputs are there. */
-void grid_bound_all(struct grid *grid);
+void takt_grid_bound_all(struct grid *grid);
 
 /* Largest absolute derivative of a component by inputs a, b and c, per step of the grid: mm or rad. */
-float grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b, unsigned c);
+float takt_grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b,
+                      unsigned c);
 
 /* Largest third derivative of a component, per step: along one input or mixed. */
-float grid_bound_third(const struct grid *grid, unsigned component);
+float takt_grid_bound_third(const struct grid *grid, unsigned component);
 
 #endif

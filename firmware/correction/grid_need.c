@@ -27,7 +27,7 @@ static unsigned corrected(const struct sums *s)
 static double largest(const struct sums *s, unsigned i, unsigned j, unsigned k)
 {
     const unsigned by[] = {i, j, k};
-    double most = (double)grid_bound(s->grid, s->component, i, j, k);
+    double most = (double)takt_grid_bound(s->grid, s->component, i, j, k);
 
     for (unsigned n = 0; n < 3; n++) {
         most *= by[n] != GRID_NO_INPUT ? s->grid->input[by[n]].per_mm : 1.0;
@@ -43,7 +43,7 @@ static void add_first(const struct sums *s, unsigned i)
     const double slope = largest(s, i, GRID_NO_INPUT, GRID_NO_INPUT) +
                          (double)(grid_patch_slope(s->grid) * input->steps_per_mm);
 
-    need_add_slope(s->need, corrected(s), input->axis, slope, s->most);
+    takt_need_add_slope(s->need, corrected(s), input->axis, slope, s->most);
     s->need->acceleration_mm_s2[corrected(s)] += slope * EDGE_SECOND_MAX * input->per_mm * v * v;
     s->need->jerk_mm_s3[corrected(s)] +=
         slope * EDGE_THIRD_MAX * input->per_mm * input->per_mm * v * v * v +
@@ -88,8 +88,8 @@ static float speed_per_s(const struct sums *s)
 /* Grids over three axes are followed by patches. */
 static void add_patches(const struct sums *s)
 {
-    const double jerk_mm_s3 = (double)grid_patch_jerk(
-        s->grid, grid_bound_third(s->grid, s->component), speed_per_s(s), (float)s->cycle_s);
+    const double jerk_mm_s3 = (double)takt_grid_patch_jerk(
+        s->grid, takt_grid_bound_third(s->grid, s->component), speed_per_s(s), (float)s->cycle_s);
     const double by_cycle = jerk_mm_s3 * s->cycle_s;
 
     s->need->noise_mm[corrected(s)] += GRID_PATCH_NEAR_MM;
@@ -119,8 +119,8 @@ static void add_component(const struct sums *s)
     }
 }
 
-void grid_need(const struct grid *grid, const struct motion_bound *most, double cycle_s,
-               struct need *need)
+void takt_grid_need(const struct grid *grid, const struct motion_bound *most, double cycle_s,
+                    struct need *need)
 {
     struct sums s = {.grid = grid, .most = most, .cycle_s = cycle_s, .need = need};
 

@@ -32,7 +32,7 @@ enum { STAGE_NONE, STAGE_CELL, STAGE_WEIGHTS, STAGE_LINES };
 static const float share[GOING] = {0.0F,          1.0F / 96.0F,  8.0F / 96.0F,  25.0F / 96.0F,
                                    48.0F / 96.0F, 71.0F / 96.0F, 88.0F / 96.0F, 95.0F / 96.0F};
 
-/* So many times as far as GRID_PATCH_FAR, axes do not come to by moving: their place has been set anew. */
+/* Axes never come this many times as far as GRID_PATCH_FAR by moving: their place has been set anew. */
 #define LOST_RATIO 2.0F
 
 #define W1 (2.0F / (float)GOING)
@@ -52,7 +52,7 @@ static double third_of(const struct grid *grid)
 
     for (unsigned i = 0; i < GRID_COMPONENTS; i++) {
         if ((grid->components & 1U << i) != 0) {
-            third = maths_max(third, (double)grid_bound_third(grid, i));
+            third = maths_max(third, (double)takt_grid_bound_third(grid, i));
         }
     }
     return third;
@@ -65,14 +65,14 @@ static inline float holding(const struct grid *grid)
 }
 
 /* What is left out at the distance r: |third derivative| r^3 / 6. */
-void grid_patch_set_pace(struct grid *grid)
+void takt_grid_patch_set_pace(struct grid *grid)
 {
     const unsigned components = grid->turn_axis < AXIS_COUNT ? GRID_COMPONENTS : AXIS_LINEAR_COUNT;
     const double third = third_of(grid);
 
     grid->reach = 0.5F;
     if (third > 0.0) {
-        grid->reach = (float)maths_min(0.5, maths_cbrt(6.0 * GRID_PATCH_NEAR_MM / third));
+        grid->reach = (float)maths_min(0.5, takt_maths_cbrt(6.0 * GRID_PATCH_NEAR_MM / third));
     }
     grid->ready = (uint8_t)(STAGE_LINES + (STENCIL + 1U) * components);
     grid->fastest = (float)GRID_PATCH_FAR * grid->reach / holding(grid);
@@ -139,7 +139,7 @@ static void get_inputs(const struct grid *grid, const struct point *at,
     }
 }
 
-/* Its anchor: so many cycles ahead, but within the table. */
+/* Its anchor: this many cycles ahead, but within the table. */
 static void begin_patch(const struct grid *grid, struct grid_patches *p, const struct point *at,
                         const float step[GRID_PATCH_INPUTS], float cycles)
 {
@@ -174,7 +174,7 @@ static void find_patch(const struct grid *grid, struct grid_patches *p)
     p->line = p->component = 0;
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
         anchor.at[grid->input[i].axis] = p->patch[1U - p->used].anchor_mm[i];
-        p->first += grid_find_cell(&grid->input[i], &anchor, &p->weight[i][0], &outside);
+        p->first += takt_grid_find_cell(&grid->input[i], &anchor, &p->weight[i][0], &outside);
     }
 }
 
@@ -183,7 +183,7 @@ static void set_all_weights(struct grid_patches *p)
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
         const float t = p->weight[i][0];
 
-        grid_set_weights(t, p->weight[i]);
+        takt_grid_set_weights(t, p->weight[i]);
         set_weights_first(t, &p->weight[i][FIRST_ORDER]);
         set_weights_second(t, &p->weight[i][SECOND_ORDER]);
     }
@@ -226,7 +226,7 @@ static __attribute__((noinline)) unsigned hold_way(const struct grid *grid,
         const struct grid_input *input = &grid->input[i];
         const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
         unsigned beyond = 0;
-        const float held = (float)(edge_hold(position, input->last, &beyond) - position);
+        const float held = (float)(takt_edge_hold(position, input->last, &beyond) - position);
 
         patch->way[i] += held;
         step[i] += held;
@@ -380,8 +380,8 @@ static GRID_INLINE void add_values(const struct grid *grid, const struct grid_pa
     }
 }
 
-unsigned grid_patch_add(const struct grid *grid, struct grid_patches *p, const struct point *at,
-                        float weight, float k[AXIS_COUNT])
+unsigned takt_grid_patch_add(const struct grid *grid, struct grid_patches *p,
+                             const struct point *at, float weight, float k[AXIS_COUNT])
 {
     follow(grid, p, at);
     const struct grid_patch *patch = &p->patch[p->used];
@@ -393,7 +393,7 @@ unsigned grid_patch_add(const struct grid *grid, struct grid_patches *p, const s
         if (patch->valid) {
             add_values(grid, patch, part, k);
         } else {
-            outside |= grid_add(grid, at, part, k);
+            outside |= takt_grid_add(grid, at, part, k);
         }
         if (going == 0 || patch == next) {
             return outside;
@@ -402,7 +402,8 @@ unsigned grid_patch_add(const struct grid *grid, struct grid_patches *p, const s
     }
 }
 
-bool grid_patch_prepare(const struct grid *grid, struct grid_patches *p, const struct point *at)
+bool takt_grid_patch_prepare(const struct grid *grid, struct grid_patches *p,
+                             const struct point *at)
 {
     if (!p->is_ready) {
         follow(grid, p, at);
@@ -413,7 +414,7 @@ bool grid_patch_prepare(const struct grid *grid, struct grid_patches *p, const s
 
 /* ---- what it takes of the axes ---- */
 
-float grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s)
+float takt_grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s)
 {
     const float half = holding(grid);
     const float back = half - (float)GOING;

@@ -25,7 +25,7 @@
  */
 #define GRID_PATCH_NEAR_MM 4e-9
 
-/* So many times as far as it is that good, a patch is used at most, by axes that go fast; its error there. */
+/* A patch is used at most this many times as far as it is that good, by axes that go fast; its error there. */
 #define GRID_PATCH_FAR      18
 #define GRID_PATCH_ERROR_MM (GRID_PATCH_NEAR_MM * GRID_PATCH_FAR * GRID_PATCH_FAR * GRID_PATCH_FAR)
 
@@ -54,18 +54,18 @@ struct grid_patches {
 };
 
 /* How patches of a grid are made: sets reach, fastest and ready, by its bounds. */
-void grid_patch_set_pace(struct grid *grid);
+void takt_grid_patch_set_pace(struct grid *grid);
 
 /*
  * Once in every cycle before anything is added: makes the first patch. True: it is there, or the axes are too fast for any;
  * nothing has been done.
  */
-bool grid_patch_prepare(const struct grid *grid, struct grid_patches *patches,
-                        const struct point *at);
+bool takt_grid_patch_prepare(const struct grid *grid, struct grid_patches *patches,
+                             const struct point *at);
 
-/* As grid_add, once in every cycle, within GRID_PATCH_ERROR_MM of it. Makes a part of the next patch. */
-unsigned grid_patch_add(const struct grid *grid, struct grid_patches *patches,
-                        const struct point *at, float weight, float k[AXIS_COUNT]);
+/* As takt_grid_add, once in every cycle, within GRID_PATCH_ERROR_MM of it. Makes a part of the next patch. */
+unsigned takt_grid_patch_add(const struct grid *grid, struct grid_patches *patches,
+                             const struct point *at, float weight, float k[AXIS_COUNT]);
 
 /*
  * The jerk that one patch going over into the other takes of a corrected axis at most, mm/s3. third: its largest third
@@ -75,7 +75,7 @@ unsigned grid_patch_add(const struct grid *grid, struct grid_patches *patches,
 #define GRID_PATCH_VELOCITY     4.0
 #define GRID_PATCH_ACCELERATION 2.0
 
-float grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s);
+float takt_grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s);
 
 /* So much more than that of the spline the slope of a patch may be, mm per step: 3 error / distance. */
 static inline float grid_patch_slope(const struct grid *grid)

@@ -15,7 +15,7 @@ static_assert(TABLE_KNOTS_MAX <= SPLINE_KNOTS_MAX, "every line of a table is a s
 static bool refuse(struct diagnostic *wrong, enum takt_error code, const char *word, size_t length,
                    double value)
 {
-    diagnostic_set(wrong, code, 0, 0, word, length, value);
+    takt_diagnostic_set(wrong, code, 0, 0, word, length, value);
     return false;
 }
 
@@ -53,7 +53,7 @@ static void transform_line(float *line, size_t stride, unsigned points)
         knot[k] = k;
         value[k] = (double)line[(k + 1) * stride];
     }
-    spline_set_bends(points, knot, value, bend);
+    takt_spline_set_bends(points, knot, value, bend);
     for (unsigned k = 0; k < points; k++) {
         value[k] -= bend[k] / 6.0;
         line[(k + 1) * stride] = (float)value[k];
@@ -143,7 +143,7 @@ static unsigned component_of(uint8_t axis)
 
 static void set_values(struct grid *grid, const struct table *table)
 {
-    const uint32_t rows = table_rows(table);
+    const uint32_t rows = takt_table_rows(table);
 
     for (uint32_t row = 0; row < rows; row++) {
         struct index index;
@@ -162,7 +162,7 @@ static void set_values(struct grid *grid, const struct table *table)
     }
 }
 
-bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong)
+bool takt_grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong)
 {
     memset(grid, 0, sizeof(*grid));
     grid->coefficient = grid->own;
@@ -186,7 +186,7 @@ bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *w
     for (unsigned i = 0; i < grid->inputs; i++) {
         transform_along(grid, i);
     }
-    grid_bound_all(grid);
-    grid_patch_set_pace(grid);
+    takt_grid_bound_all(grid);
+    takt_grid_patch_set_pace(grid);
     return true;
 }

@@ -74,8 +74,8 @@ static GRID_INLINE void set_weights_second(float t, float weight[STENCIL])
 }
 
 /* The cell a point is in along one input: where it begins, and how far in it the point is, in steps. */
-size_t grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
-                      unsigned *outside);
+size_t takt_grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
+                           unsigned *outside);
 
 /*
  * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it, and their first and half their second derivatives by t
@@ -85,7 +85,7 @@ size_t grid_find_cell(const struct grid_input *input, const struct point *at, fl
  *
  * as c0 + t (c1 + t (c2 + t c3)).
  */
-void grid_set_weights(float t, float weight[STENCIL]);
+void takt_grid_set_weights(float t, float weight[STENCIL]);
 
 static GRID_INLINE float finish(const float sum[STENCIL], const float weight[STENCIL])
 {

@@ -30,6 +30,6 @@ struct correction_layer {
 };
 
 /* Index among the axes of one of the four coordinates; AXIS_COUNT: the machine has no such axis. */
-unsigned correction_axis_of(const struct correction *c, unsigned coordinate);
+unsigned takt_correction_axis_of(const struct correction *c, unsigned coordinate);
 
 #endif

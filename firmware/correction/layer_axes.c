@@ -57,7 +57,7 @@ static void axes_add(struct correction *c, struct layer_notes *notes, double wei
     const struct geometry *g = c->tables->geometry;
 
     sum->outside |=
-        axis_tables_sum(&c->tables->axes, c->at, notes->coefficient, (float)weight, sum->fine);
+        takt_axis_tables_sum(&c->tables->axes, c->at, notes->coefficient, (float)weight, sum->fine);
     if (g != NULL) {
         sum->outside |= g->take_back(g, c->at, weight, c->axes_end, sum->fine);
     }
@@ -68,19 +68,19 @@ static void axes_need(const struct correction *c, const struct layer_notes *note
 {
     /* From -1 to 1, twice the step the fade's bounds are for. */
     const struct approach_bound approach = {
-        .velocity_per_s = 2.0 * fade_velocity_per_s(&c->reversal_pace),
-        .acceleration_per_s2 = 2.0 * fade_acceleration_per_s2(&c->reversal_pace),
-        .jerk_per_s3 = 2.0 * fade_jerk_per_s3(&c->reversal_pace),
+        .velocity_per_s = 2.0 * takt_fade_velocity_per_s(&c->reversal_pace),
+        .acceleration_per_s2 = 2.0 * takt_fade_acceleration_per_s2(&c->reversal_pace),
+        .jerk_per_s3 = 2.0 * takt_fade_jerk_per_s3(&c->reversal_pace),
     };
 
     (void)notes;
-    axis_tables_need(&c->tables->axes, &approach, most, need);
+    takt_axis_tables_need(&c->tables->axes, &approach, most, need);
     if (c->tables->geometry != NULL) {
         c->tables->geometry->need(c->tables->geometry, most, need);
     }
 }
 
-const struct correction_layer layer_axes = {
+const struct correction_layer takt_layer_axes = {
     .name = "axes",
     .begin = axes_begin,
     .follow = axes_follow,

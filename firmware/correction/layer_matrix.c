@@ -18,8 +18,8 @@ static bool matrix_begin(const struct correction *c, struct layer_notes *notes)
 
     for (unsigned i = 0; i < SIDE; i++) {
         for (unsigned j = 0; j < SIDE; j++) {
-            const bool exists =
-                correction_axis_of(c, i) < AXIS_COUNT && correction_axis_of(c, j) < AXIS_COUNT;
+            const bool exists = takt_correction_axis_of(c, i) < AXIS_COUNT &&
+                                takt_correction_axis_of(c, j) < AXIS_COUNT;
             const double a = exists ? s->machine[i][j] + s->workpiece[i][j] : 0.0;
 
             notes->coefficient[SIDE * i + j] = (float)a;
@@ -86,11 +86,11 @@ static void matrix_add(struct correction *c, struct layer_notes *notes, double w
     const float *row = notes->coefficient;
 
     for (unsigned i = 0; i < SIDE; i++) {
-        const unsigned corrected = correction_axis_of(c, i);
+        const unsigned corrected = takt_correction_axis_of(c, i);
         float k = (float)notes->fade[i].value;
 
         for (unsigned j = 0; j < SIDE && corrected < AXIS_COUNT; j++) {
-            const unsigned input = correction_axis_of(c, j);
+            const unsigned input = takt_correction_axis_of(c, j);
 
             k += input < AXIS_COUNT ? row[SIDE * i + j] * (float)c->at->at[input] : 0.0F;
         }
@@ -104,14 +104,14 @@ static void matrix_need(const struct correction *c, const struct layer_notes *no
                         const struct motion_bound *most, struct need *need)
 {
     for (unsigned i = 0; i < SIDE; i++) {
-        const unsigned corrected = correction_axis_of(c, i);
+        const unsigned corrected = takt_correction_axis_of(c, i);
 
         for (unsigned j = 0; j < SIDE && corrected < AXIS_COUNT; j++) {
-            const unsigned input = correction_axis_of(c, j);
+            const unsigned input = takt_correction_axis_of(c, j);
             const double slope = maths_abs((double)notes->coefficient[SIDE * i + j]);
 
             if (input < AXIS_COUNT) {
-                need_add_slope(need, corrected, input, slope, most);
+                takt_need_add_slope(need, corrected, input, slope, most);
                 need->size_mm[corrected] += slope * most->farthest_mm[input];
                 need->noise_mm[corrected] += slope * most->farthest_mm[input] * NEED_ROUNDING;
             }
@@ -119,7 +119,7 @@ static void matrix_need(const struct correction *c, const struct layer_notes *no
     }
 }
 
-const struct correction_layer layer_matrix = {
+const struct correction_layer takt_layer_matrix = {
     .name = "matrix",
     .begin = matrix_begin,
     .follow = matrix_follow,

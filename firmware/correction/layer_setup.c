@@ -15,7 +15,7 @@
 
 #define SIDE AXIS_LINEAR_COUNT
 
-/* Of the numbers of a set-up: offset, turns about X, Y, Z, and this. */
+/* Places among the numbers of a set-up: offset, turns about X, Y, Z, and this. */
 enum { TURN = 2 * SIDE };
 
 /* m = a m, a the rotation by an angle about an axis. */
@@ -25,7 +25,7 @@ static void turn(double m[SIDE][SIDE], unsigned about, double angle_rad)
     const unsigned second = (about + 2) % SIDE;
     double sine, cosine;
 
-    maths_sincos(angle_rad, &sine, &cosine);
+    takt_maths_sincos(angle_rad, &sine, &cosine);
     for (unsigned j = 0; j < SIDE; j++) {
         const double u = m[first][j];
         const double v = m[second][j];
@@ -35,7 +35,7 @@ static void turn(double m[SIDE][SIDE], unsigned about, double angle_rad)
     }
 }
 
-void setup_prepare(struct setup *s)
+void takt_setup_prepare(struct setup *s)
 {
     double rotation[SIDE][SIDE] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
 
@@ -49,7 +49,7 @@ void setup_prepare(struct setup *s)
     }
 }
 
-void setup_get_numbers(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
+void takt_setup_get_numbers(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
 {
     const struct correction_settings *s = &c->settings;
 
@@ -77,7 +77,7 @@ static bool set_notes(struct layer_notes *notes, const struct setup *s)
     return any;
 }
 
-bool setup_exchange(struct correction *c, struct layer_notes *notes)
+bool takt_setup_exchange(struct correction *c, struct layer_notes *notes)
 {
     set_numbers(&c->settings, c->setup_next.number);
     return set_notes(notes, &c->setup_next);
@@ -87,8 +87,8 @@ static bool setup_begin(const struct correction *c, struct layer_notes *notes)
 {
     struct setup s;
 
-    setup_get_numbers(c, s.number);
-    setup_prepare(&s);
+    takt_setup_get_numbers(c, s.number);
+    takt_setup_prepare(&s);
     return set_notes(notes, &s);
 }
 
@@ -126,7 +126,7 @@ static void setup_add(struct correction *c, struct layer_notes *notes, double we
         way[i] = c->at->at[i] - s->setup_pivot_mm[i];
     }
     if (has_table(c)) {
-        maths_sincos(c->at->at[s->turn_axis], &sine, &cosine);
+        takt_maths_sincos(c->at->at[s->turn_axis], &sine, &cosine);
         turn_vector(c, -sine, cosine, way);
     }
     for (unsigned i = 0; i < SIDE; i++) {
@@ -157,7 +157,7 @@ static void add_constant(const struct correction *c, unsigned i, unsigned j, dou
 {
     const double size = maths_abs(slope);
 
-    need_add_slope(need, i, j, size, most);
+    takt_need_add_slope(need, i, j, size, most);
     need->size_mm[i] += size * (most->farthest_mm[j] + maths_abs(c->settings.setup_pivot_mm[j]));
 }
 
@@ -167,7 +167,7 @@ static struct need_jet way_of(const struct correction *c, unsigned j,
 {
     struct need_jet way = {{maths_abs(c->settings.setup_pivot_mm[j]), 0.0, 0.0, 0.0}};
 
-    need_jet_add_travel(&way, most, j);
+    takt_need_jet_add_travel(&way, most, j);
     return way;
 }
 
@@ -187,20 +187,21 @@ static void add_waves(const struct correction *c, const struct setup *s,
     const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
     const struct need_jet along = way_of(c, t, most);
     const unsigned psi = c->settings.turn_axis;
-    const struct need_jet shift = need_jet_wave(length_of(offset[u], offset[v]), 1.0, most, psi);
-    const struct need_jet out = need_jet_wave(length_of(m[u][t], m[v][t]), 1.0, most, psi);
-    const struct need_jet into = need_jet_wave(length_of(m[t][u], m[t][v]), 1.0, most, psi);
-    const struct need_jet twice = need_jet_wave(round_twice, 2.0, most, psi);
+    const struct need_jet shift =
+        takt_need_jet_wave(length_of(offset[u], offset[v]), 1.0, most, psi);
+    const struct need_jet out = takt_need_jet_wave(length_of(m[u][t], m[v][t]), 1.0, most, psi);
+    const struct need_jet into = takt_need_jet_wave(length_of(m[t][u], m[t][v]), 1.0, most, psi);
+    const struct need_jet twice = takt_need_jet_wave(round_twice, 2.0, most, psi);
 
     for (unsigned i = 0; i < 2; i++) {
         const unsigned axis = i == 0 ? u : v;
         const struct need_jet way = way_of(c, axis, most);
 
-        need_add_product(need, axis, &shift, &one);
-        need_add_product(need, axis, &out, &along);
-        need_add_product(need, t, &into, &way);
-        need_add_product(need, u, &twice, &way);
-        need_add_product(need, v, &twice, &way);
+        takt_need_add_product(need, axis, &shift, &one);
+        takt_need_add_product(need, axis, &out, &along);
+        takt_need_add_product(need, t, &into, &way);
+        takt_need_add_product(need, u, &twice, &way);
+        takt_need_add_product(need, v, &twice, &way);
     }
 }
 
@@ -224,8 +225,8 @@ static void add_unturned(const struct correction *c, const struct setup *s,
     need->size_mm[c->settings.turn_axis] += maths_abs(s->number[TURN]);
 }
 
-void setup_need(const struct correction *c, const struct setup *s, const struct motion_bound *most,
-                struct need *need)
+void takt_setup_need(const struct correction *c, const struct setup *s,
+                     const struct motion_bound *most, struct need *need)
 {
     if (has_table(c)) {
         add_unturned(c, s, most, need);
@@ -245,12 +246,12 @@ static void need_in_force(const struct correction *c, const struct layer_notes *
 {
     struct setup s;
 
-    setup_get_numbers(c, s.number);
+    takt_setup_get_numbers(c, s.number);
     memcpy(s.less_one, notes->number, sizeof(s.less_one));
-    setup_need(c, &s, most, need);
+    takt_setup_need(c, &s, most, need);
 }
 
-const struct correction_layer layer_setup = {
+const struct correction_layer takt_layer_setup = {
     .name = "setup",
     .begin = setup_begin,
     .add = setup_add,

@@ -51,16 +51,16 @@ static void thermal_need(const struct correction *c, const struct layer_notes *n
         const double per_k = maths_abs(c->settings.thermal_per_k[i]);
         const double step_mm = per_k * RISE_STEP_K * most->farthest_mm[i];
 
-        need_add_slope(need, i, i, per_k * RISE_MAX_K, most);
+        takt_need_add_slope(need, i, i, per_k * RISE_MAX_K, most);
         need->size_mm[i] += per_k * RISE_MAX_K * most->farthest_mm[i];
         need->noise_mm[i] += per_k * RISE_MAX_K * most->farthest_mm[i] * NEED_ROUNDING;
-        need->velocity_mm_s[i] += step_mm * fade_velocity_per_s(&c->layer_pace);
-        need->acceleration_mm_s2[i] += step_mm * fade_acceleration_per_s2(&c->layer_pace);
-        need->jerk_mm_s3[i] += step_mm * fade_jerk_per_s3(&c->layer_pace);
+        need->velocity_mm_s[i] += step_mm * takt_fade_velocity_per_s(&c->layer_pace);
+        need->acceleration_mm_s2[i] += step_mm * takt_fade_acceleration_per_s2(&c->layer_pace);
+        need->jerk_mm_s3[i] += step_mm * takt_fade_jerk_per_s3(&c->layer_pace);
     }
 }
 
-const struct correction_layer layer_thermal = {
+const struct correction_layer takt_layer_thermal = {
     .name = "thermal",
     .begin = thermal_begin,
     .follow = thermal_follow,

@@ -11,7 +11,7 @@ static bool volume_prepare(struct correction *c)
 {
     const struct grid *grid = &c->tables->volume;
 
-    return grid->inputs != GRID_PATCH_INPUTS || grid_patch_prepare(grid, &c->patches, c->at);
+    return grid->inputs != GRID_PATCH_INPUTS || takt_grid_patch_prepare(grid, &c->patches, c->at);
 }
 
 static void volume_add(struct correction *c, struct layer_notes *notes, double weight,
@@ -21,18 +21,18 @@ static void volume_add(struct correction *c, struct layer_notes *notes, double w
     const struct grid *grid = &c->tables->volume;
 
     sum->outside |= grid->inputs == GRID_PATCH_INPUTS
-                        ? grid_patch_add(grid, &c->patches, c->at, (float)weight, sum->fine)
-                        : grid_add(grid, c->at, (float)weight, sum->fine);
+                        ? takt_grid_patch_add(grid, &c->patches, c->at, (float)weight, sum->fine)
+                        : takt_grid_add(grid, c->at, (float)weight, sum->fine);
 }
 
 static void volume_need(const struct correction *c, const struct layer_notes *notes,
                         const struct motion_bound *most, struct need *need)
 {
     (void)notes;
-    grid_need(&c->tables->volume, most, c->cycle_s, need);
+    takt_grid_need(&c->tables->volume, most, c->cycle_s, need);
 }
 
-const struct correction_layer layer_volume = {
+const struct correction_layer takt_layer_volume = {
     .name = "volume",
     .begin = volume_begin,
     .prepare = volume_prepare,

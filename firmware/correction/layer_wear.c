@@ -47,7 +47,7 @@ static void set_direction(const struct correction *c, struct layer_notes *notes)
         const double v = d[second];
         double sine, cosine;
 
-        maths_sincos(c->at->at[head], &sine, &cosine);
+        takt_maths_sincos(c->at->at[head], &sine, &cosine);
         d[first] = cosine * u - sine * v;
         d[second] = sine * u + cosine * v;
     }
@@ -95,7 +95,7 @@ static struct correction_wear *book_of(struct correction *c, uint32_t tool)
     return oldest;
 }
 
-void correction_set_wear(struct correction *c, uint32_t tool, double length_mm, double time_s)
+void takt_correction_set_wear(struct correction *c, uint32_t tool, double length_mm, double time_s)
 {
     struct correction_wear *book = book_of(c, tool);
 
@@ -103,8 +103,8 @@ void correction_set_wear(struct correction *c, uint32_t tool, double length_mm, 
     book->time_s = time_s;
 }
 
-void correction_get_wear(const struct correction *c, uint32_t tool, double *length_mm,
-                         double *time_s)
+void takt_correction_get_wear(const struct correction *c, uint32_t tool, double *length_mm,
+                              double *time_s)
 {
     *length_mm = *time_s = 0.0;
     for (unsigned i = 0; i < CORRECTION_TOOLS_MAX; i++) {
@@ -144,7 +144,7 @@ static double cross_path(const struct correction *c, const double t[AXIS_LINEAR_
 
         n[i] = t[j] * (double)d[k] - t[k] * (double)d[j];
     }
-    plane_axes(c->move->plane, &first, &second);
+    takt_plane_axes(c->move->plane, &first, &second);
     const double right = n[first] * t[second] - n[second] * t[first];
 
     return left ? right : -right;
@@ -222,15 +222,16 @@ static struct need_jet direction_jet(const struct correction *c, const struct la
     const unsigned first = (head - AXIS_A + 1) % AXIS_LINEAR_COUNT;
     const unsigned second = (head - AXIS_A + 2) % AXIS_LINEAR_COUNT;
 
-    return need_jet_wave(maths_sqrt(d[first] * d[first] + d[second] * d[second]), 1.0, most, head);
+    return takt_need_jet_wave(maths_sqrt(d[first] * d[first] + d[second] * d[second]), 1.0, most,
+                              head);
 }
 
 /* What fades between 0 and a size. */
 static struct need_jet fade_jet(const struct correction *c, double size_mm)
 {
-    return (struct need_jet){{size_mm, size_mm * fade_velocity_per_s(&c->layer_pace),
-                              size_mm * fade_acceleration_per_s2(&c->layer_pace),
-                              size_mm * fade_jerk_per_s3(&c->layer_pace)}};
+    return (struct need_jet){{size_mm, size_mm * takt_fade_velocity_per_s(&c->layer_pace),
+                              size_mm * takt_fade_acceleration_per_s2(&c->layer_pace),
+                              size_mm * takt_fade_jerk_per_s3(&c->layer_pace)}};
 }
 
 static void wear_need(const struct correction *c, const struct layer_notes *notes,
@@ -243,12 +244,12 @@ static void wear_need(const struct correction *c, const struct layer_notes *note
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         const struct need_jet d = direction_jet(c, notes, most, i);
 
-        need_add_product(need, i, &d, &along);
-        need_add_product(need, i, &one, &across);
+        takt_need_add_product(need, i, &d, &along);
+        takt_need_add_product(need, i, &one, &across);
     }
 }
 
-const struct correction_layer layer_wear = {
+const struct correction_layer takt_layer_wear = {
     .name = "wear",
     .begin = wear_begin,
     .follow = wear_follow,

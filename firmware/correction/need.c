@@ -1,14 +1,14 @@
 #include "correction/need.h"
 
-void need_add_slope(struct need *need, unsigned corrected, unsigned input, double slope,
-                    const struct motion_bound *most)
+void takt_need_add_slope(struct need *need, unsigned corrected, unsigned input, double slope,
+                         const struct motion_bound *most)
 {
     need->velocity_mm_s[corrected] += slope * most->velocity_mm_s[input];
     need->acceleration_mm_s2[corrected] += slope * most->acceleration_mm_s2[input];
     need->jerk_mm_s3[corrected] += slope * most->jerk_mm_s3[input];
 }
 
-void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis)
+void takt_need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis)
 {
     jet->value[0] += most->farthest_mm[axis];
     jet->value[1] += most->velocity_mm_s[axis];
@@ -16,8 +16,8 @@ void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, 
     jet->value[3] += most->jerk_mm_s3[axis];
 }
 
-struct need_jet need_jet_wave(double size, double times, const struct motion_bound *most,
-                              unsigned axis)
+struct need_jet takt_need_jet_wave(double size, double times, const struct motion_bound *most,
+                                   unsigned axis)
 {
     const double v = times * most->velocity_mm_s[axis];
     const double a = times * most->acceleration_mm_s2[axis];
@@ -27,8 +27,8 @@ struct need_jet need_jet_wave(double size, double times, const struct motion_bou
         {size, size * v, size * (v * v + a), size * (v * v * v + 3.0 * v * a + j)}};
 }
 
-void need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
-                      const struct need_jet *a)
+void takt_need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
+                           const struct need_jet *a)
 {
     const double *p = r->value;
     const double *q = a->value;

@@ -31,8 +31,8 @@ struct need {
  *
  *     dK/dt = s v    d2K/dt2 = s a    d3K/dt3 = s j
  */
-void need_add_slope(struct need *need, unsigned corrected, unsigned input, double slope,
-                    const struct motion_bound *most);
+void takt_need_add_slope(struct need *need, unsigned corrected, unsigned input, double slope,
+                         const struct motion_bound *most);
 
 /* Bounds of a quantity and of its first three derivatives in time. */
 struct need_jet {
@@ -40,14 +40,14 @@ struct need_jet {
 };
 
 /* The position of an axis is added to the quantity. */
-void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis);
+void takt_need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis);
 
 /* size cos(times x + ...), x the position of a rotary axis. */
-struct need_jet need_jet_wave(double size, double times, const struct motion_bound *most,
-                              unsigned axis);
+struct need_jet takt_need_jet_wave(double size, double times, const struct motion_bound *most,
+                                   unsigned axis);
 
 /* Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1 a2 + 3 r2 a1 + r3 a. */
-void need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
-                      const struct need_jet *a);
+void takt_need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
+                           const struct need_jet *a);
 
 #endif

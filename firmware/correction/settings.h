@@ -51,6 +51,6 @@ struct correction_settings {
 };
 
 /* No correction, the tool along Z; 1 mm and 5 um/mm as the most a table may ask, fades of 1 s and 0.25 s. */
-void correction_settings_set_default(struct correction_settings *settings);
+void takt_correction_settings_set_default(struct correction_settings *settings);
 
 #endif

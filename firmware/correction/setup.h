@@ -7,16 +7,16 @@
 #include "correction/correction.h"
 
 /* Makes of its numbers what the control cycle follows. */
-void setup_prepare(struct setup *s);
+void takt_setup_prepare(struct setup *s);
 
 /* The numbers in force. */
-void setup_get_numbers(const struct correction *c, double number[CORRECTION_SETUP_VALUES]);
+void takt_setup_get_numbers(const struct correction *c, double number[CORRECTION_SETUP_VALUES]);
 
 /* c->setup_next is in force from now on. False: the part stands right with it. */
-bool setup_exchange(struct correction *c, struct layer_notes *notes);
+bool takt_setup_exchange(struct correction *c, struct layer_notes *notes);
 
 /* Adds what it takes of the axes at full weight. */
-void setup_need(const struct correction *c, const struct setup *s, const struct motion_bound *most,
-                struct need *need);
+void takt_setup_need(const struct correction *c, const struct setup *s,
+                     const struct motion_bound *most, struct need *need);
 
 #endif

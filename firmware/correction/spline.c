@@ -74,7 +74,7 @@ static double beyond(double near, double far, double outer, double inner)
     return near + (near - far) * outer / inner;
 }
 
-void spline_set_bends(unsigned count, const double *knot, const double *value, double *bend)
+void takt_spline_set_bends(unsigned count, const double *knot, const double *value, double *bend)
 {
     assert(count >= 2 && count <= SPLINE_KNOTS_MAX);
     const unsigned last = count - 1;

@@ -15,7 +15,7 @@
 #define TABLE_ROWS_COUNTED UINT32_C(0x100000)
 static_assert(TABLE_VALUES_MAX < TABLE_ROWS_COUNTED, "tables are counted exactly");
 
-uint32_t table_rows(const struct table *table)
+uint32_t takt_table_rows(const struct table *table)
 {
     uint32_t rows = 1;
 
@@ -42,7 +42,7 @@ static void name_add(struct name *n, const char *text, size_t length)
 static void name_add_position(struct name *n, double value)
 {
     char digits[DECIMAL_TEXT_MAX];
-    size_t length = decimal_write(digits, value, NAME_PLACES);
+    size_t length = takt_decimal_write(digits, value, NAME_PLACES);
 
     while (digits[length - 1] == '0') {
         length--;
@@ -66,8 +66,8 @@ static void name_add_output(struct name *n, const char kind[3], const struct tab
     }
 }
 
-void table_name_cell(const struct table *table, uint32_t row, unsigned output,
-                     char name[DIAGNOSTIC_WORD_MAX + 1])
+void takt_table_name_cell(const struct table *table, uint32_t row, unsigned output,
+                          char name[DIAGNOSTIC_WORD_MAX + 1])
 {
     struct name n = {name, 0};
 
@@ -101,7 +101,7 @@ static size_t length_of(const char *word)
 
 static bool refuse(struct diagnostic *wrong, enum takt_error code, const char *word, double value)
 {
-    diagnostic_set(wrong, code, 0, 0, word, length_of(word), value);
+    takt_diagnostic_set(wrong, code, 0, 0, word, length_of(word), value);
     return false;
 }
 
@@ -117,7 +117,7 @@ static bool refuse_cell(const struct table *table, struct diagnostic *wrong, enu
 {
     char name[DIAGNOSTIC_WORD_MAX + 1];
 
-    table_name_cell(table, row, output, name);
+    takt_table_name_cell(table, row, output, name);
     return refuse(wrong, code, name, value);
 }
 
@@ -222,13 +222,13 @@ static bool check_cell(const struct table *table, const struct table_rules *rule
     return true;
 }
 
-bool table_check(const struct table *table, const struct table_rules *rules,
-                 struct diagnostic *wrong)
+bool takt_table_check(const struct table *table, const struct table_rules *rules,
+                      struct diagnostic *wrong)
 {
     if (!check_axes(table, rules, wrong) || !check_knots(table, wrong)) {
         return false;
     }
-    const uint32_t rows = table_rows(table);
+    const uint32_t rows = takt_table_rows(table);
 
     for (uint32_t row = 0; row < rows; row++) {
         for (unsigned output = 0; output < table->outputs; output++) {

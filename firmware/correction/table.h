@@ -49,17 +49,17 @@ struct table_rules {
     double steepest_ratio; /* |difference of K between neighbours| / their distance */
 };
 
-uint32_t table_rows(const struct table *table);
+uint32_t takt_table_rows(const struct table *table);
 
 /*
  * All that can be wrong with numbers: axes, order, even steps of grids, magnitude, slope. False: *wrong has the first
  * cell that breaks a rule in its word ("X 150 Y 40: KZ"); its line is 0.
  */
-bool table_check(const struct table *table, const struct table_rules *rules,
-                 struct diagnostic *wrong);
+bool takt_table_check(const struct table *table, const struct table_rules *rules,
+                      struct diagnostic *wrong);
 
 /* Writes "X 150 Y 40: KZ" for a cell, "X 150 Y 40" when output is not below table->outputs. Zero-terminated. */
-void table_name_cell(const struct table *table, uint32_t row, unsigned output,
-                     char name[DIAGNOSTIC_WORD_MAX + 1]);
+void takt_table_name_cell(const struct table *table, uint32_t row, unsigned output,
+                          char name[DIAGNOSTIC_WORD_MAX + 1]);
 
 #endif

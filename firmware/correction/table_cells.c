@@ -6,7 +6,7 @@
 /* Larger exponents are no measurements any more. */
 #define EXPONENT_MAX 300
 
-void cells_open(struct cells *c, const char *text, size_t length)
+void takt_cells_open(struct cells *c, const char *text, size_t length)
 {
     *c = (struct cells){.text = text, .length = length};
 }
@@ -26,7 +26,7 @@ static bool is_comment_or_empty(const struct cells *c)
     return at == c->end || c->text[at] == '#';
 }
 
-bool cells_next_line(struct cells *c)
+bool takt_cells_next_line(struct cells *c)
 {
     while (c->next < c->length) {
         c->begin = c->end = c->next;
@@ -61,7 +61,7 @@ static void trim(struct cells *c)
     }
 }
 
-bool cells_next(struct cells *c, bool white)
+bool takt_cells_next(struct cells *c, bool white)
 {
     while (white && c->position < c->end && is_space(c->text[c->position])) {
         c->position++;
@@ -103,7 +103,7 @@ static size_t match(const struct cells *c, size_t at, const char *word)
     return length;
 }
 
-bool cells_is(const struct cells *c, const char *word)
+bool takt_cells_is(const struct cells *c, const char *word)
 {
     return c->cell + match(c, c->cell, word) == c->until && c->cell < c->until;
 }
@@ -139,7 +139,7 @@ static int read_exponent(const struct cells *c, size_t *at)
     return negative ? -exponent : exponent;
 }
 
-enum takt_error cells_number(const struct cells *c, double *value)
+enum takt_error takt_cells_number(const struct cells *c, double *value)
 {
     size_t at = c->cell;
     bool negative = false;
@@ -150,7 +150,7 @@ enum takt_error cells_number(const struct cells *c, double *value)
     if (match(c, at, "nan") != 0 || match(c, at, "inf") != 0) {
         return TAKT_ERROR_TABLE_NOT_FINITE;
     }
-    const size_t digits = decimal_read(c->text + at, c->until - at, value);
+    const size_t digits = takt_decimal_read(c->text + at, c->until - at, value);
 
     at += digits;
     const int exponent = read_exponent(c, &at);
@@ -165,10 +165,10 @@ enum takt_error cells_number(const struct cells *c, double *value)
     return maths_is_finite(*value) ? TAKT_OK : TAKT_ERROR_TABLE_NOT_FINITE;
 }
 
-bool cells_refuse(const struct cells *c, struct diagnostic *wrong, enum takt_error code,
-                  double value)
+bool takt_cells_refuse(const struct cells *c, struct diagnostic *wrong, enum takt_error code,
+                       double value)
 {
-    diagnostic_set(wrong, code, c->line, (uint32_t)(c->cell - c->begin) + 1, c->text + c->cell,
-                   c->until - c->cell, value);
+    takt_diagnostic_set(wrong, code, c->line, (uint32_t)(c->cell - c->begin) + 1, c->text + c->cell,
+                        c->until - c->cell, value);
     return false;
 }

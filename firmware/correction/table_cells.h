@@ -21,22 +21,22 @@ struct cells {
     uint32_t line;
 };
 
-void cells_open(struct cells *c, const char *text, size_t length);
+void takt_cells_open(struct cells *c, const char *text, size_t length);
 
 /* Goes to the next line that is neither empty nor a comment. False: there is none. */
-bool cells_next_line(struct cells *c);
+bool takt_cells_next_line(struct cells *c);
 
 /* Goes to the next cell of the line. False: there is none. white: spaces separate cells, not commas. */
-bool cells_next(struct cells *c, bool white);
+bool takt_cells_next(struct cells *c, bool white);
 
 /* Does the current cell read so? */
-bool cells_is(const struct cells *c, const char *word);
+bool takt_cells_is(const struct cells *c, const char *word);
 
 /* The current cell as a number. TAKT_OK, TAKT_ERROR_TABLE_NUMBER or TAKT_ERROR_TABLE_NOT_FINITE. */
-enum takt_error cells_number(const struct cells *c, double *value);
+enum takt_error takt_cells_number(const struct cells *c, double *value);
 
 /* An error about the current cell. Always false. */
-bool cells_refuse(const struct cells *c, struct diagnostic *wrong, enum takt_error code,
-                  double value);
+bool takt_cells_refuse(const struct cells *c, struct diagnostic *wrong, enum takt_error code,
+                       double value);
 
 #endif

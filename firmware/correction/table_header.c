@@ -60,7 +60,7 @@ static bool take(struct cells *rest, const char *word)
     while (head.until < rest->until && word[head.until - rest->cell] != '\0') {
         head.until++;
     }
-    if (!cells_is(&head, word)) {
+    if (!takt_cells_is(&head, word)) {
         return false;
     }
     rest->cell = head.until;
@@ -70,7 +70,7 @@ static bool take(struct cells *rest, const char *word)
 static bool read_unit(const struct cells *rest, const struct column *column, double *unit)
 {
     for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++) {
-        if (cells_is(rest, units[i].name) &&
+        if (takt_cells_is(rest, units[i].name) &&
             units[i].rotary == (column->axis >= AXIS_LINEAR_COUNT) &&
             (column->correction || !units[i].small)) {
             *unit = units[i].size;
@@ -201,29 +201,29 @@ static bool check_columns(const struct cells *cells, const struct table *table,
                           struct diagnostic *wrong)
 {
     if (table->outputs == 0) {
-        return cells_refuse(cells, wrong, TAKT_ERROR_TABLE_OUTPUTS_MISSING, 0.0);
+        return takt_cells_refuse(cells, wrong, TAKT_ERROR_TABLE_OUTPUTS_MISSING, 0.0);
     }
     for (unsigned i = 0; i < table->outputs; i++) {
         if (is_alone(table, &table->output[i])) {
             const char word[] = {'K', AXIS_LETTERS[table->output[i].axis]};
 
-            diagnostic_set(wrong, TAKT_ERROR_TABLE_DIRECTION_ALONE, cells->line, 1, word,
-                           sizeof(word), 0.0);
+            takt_diagnostic_set(wrong, TAKT_ERROR_TABLE_DIRECTION_ALONE, cells->line, 1, word,
+                                sizeof(word), 0.0);
             return false;
         }
     }
     return true;
 }
 
-bool table_header_read(struct cells *cells, struct table *table, struct table_header *header,
-                       struct diagnostic *wrong)
+bool takt_table_header_read(struct cells *cells, struct table *table, struct table_header *header,
+                            struct diagnostic *wrong)
 {
     header->columns = 0;
-    while (cells_next(cells, false)) {
+    while (takt_cells_next(cells, false)) {
         const enum takt_error error = add_column(cells, table, header);
 
         if (error != TAKT_OK) {
-            return cells_refuse(cells, wrong, error, TABLE_INPUTS_MAX);
+            return takt_cells_refuse(cells, wrong, error, TABLE_INPUTS_MAX);
         }
     }
     return check_columns(cells, table, wrong);

@@ -15,7 +15,7 @@ struct table_header {
 };
 
 /* Reads the current line into inputs, outputs and units. False: *wrong is set. */
-bool table_header_read(struct cells *cells, struct table *table, struct table_header *header,
-                       struct diagnostic *wrong);
+bool takt_table_header_read(struct cells *cells, struct table *table, struct table_header *header,
+                            struct diagnostic *wrong);
 
 #endif

@@ -29,10 +29,10 @@ static bool is_same(double a, double b)
 /* The number of the current cell. False: r->wrong names it. */
 static bool read_number(struct reader *r, unsigned column, double *value)
 {
-    const enum takt_error error = cells_number(&r->cells, value);
+    const enum takt_error error = takt_cells_number(&r->cells, value);
 
     if (error != TAKT_OK) {
-        return cells_refuse(&r->cells, r->wrong, error, 0.0);
+        return takt_cells_refuse(&r->cells, r->wrong, error, 0.0);
     }
     *value *= r->header.unit[column];
     return true;
@@ -42,22 +42,22 @@ static bool read_cells(struct reader *r, double value[TABLE_COLUMNS_MAX])
 {
     unsigned count = 0;
 
-    while (cells_next(&r->cells, false)) {
+    while (takt_cells_next(&r->cells, false)) {
         if (count < r->header.columns && !read_number(r, count, &value[count])) {
             return false;
         }
         count++;
     }
     return count == r->header.columns ||
-           cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_CELL_COUNT, count);
+           takt_cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_CELL_COUNT, count);
 }
 
 /* ---- the order of the points ---- */
 
 static bool refuse_input(struct reader *r, enum takt_error code, unsigned input, double value)
 {
-    diagnostic_set(r->wrong, code, r->cells.line, 1, &AXIS_LETTERS[r->table->input[input]], 1,
-                   value);
+    takt_diagnostic_set(r->wrong, code, r->cells.line, 1, &AXIS_LETTERS[r->table->input[input]], 1,
+                        value);
     return false;
 }
 
@@ -98,11 +98,11 @@ static bool refuse_point(struct reader *r)
     for (unsigned i = r->table->inputs; i-- > 0;) {
         row = row * r->table->knots[i] + r->index[i];
     }
-    table_name_cell(r->table, row, TABLE_OUTPUTS_MAX, name);
+    takt_table_name_cell(r->table, row, TABLE_OUTPUTS_MAX, name);
     while (name[length] != '\0') {
         length++;
     }
-    diagnostic_set(r->wrong, TAKT_ERROR_TABLE_POINT, r->cells.line, 1, name, length, 0.0);
+    takt_diagnostic_set(r->wrong, TAKT_ERROR_TABLE_POINT, r->cells.line, 1, name, length, 0.0);
     return false;
 }
 
@@ -147,7 +147,7 @@ static bool take_values(struct reader *r, const double *value)
     const uint32_t at = r->rows * t->outputs;
 
     if (at + t->outputs > TABLE_VALUES_MAX) {
-        return cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_FULL, TABLE_VALUES_MAX);
+        return takt_cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_FULL, TABLE_VALUES_MAX);
     }
     for (unsigned i = 0; i < t->outputs; i++) {
         t->value_mm[at + i] = (float)value[i];
@@ -198,15 +198,15 @@ static bool read_hexadecimal(const struct cells *c, uint32_t *value)
 
 static bool read_checksum(struct reader *r)
 {
-    const uint32_t found = crc32_add(CRC32_START, r->cells.text, r->cells.begin);
+    const uint32_t found = takt_crc32_add(CRC32_START, r->cells.text, r->cells.begin);
     uint32_t expected;
 
-    if (!cells_next(&r->cells, false) || !read_hexadecimal(&r->cells, &expected) ||
+    if (!takt_cells_next(&r->cells, false) || !read_hexadecimal(&r->cells, &expected) ||
         expected != found) {
-        return cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_CHECKSUM, 0.0);
+        return takt_cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_CHECKSUM, 0.0);
     }
-    return !cells_next_line(&r->cells) ||
-           cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_AFTER_CHECKSUM, 0.0);
+    return !takt_cells_next_line(&r->cells) ||
+           takt_cells_refuse(&r->cells, r->wrong, TAKT_ERROR_TABLE_AFTER_CHECKSUM, 0.0);
 }
 
 /* Looks at the line without reading it. */
@@ -214,14 +214,14 @@ static bool is_checksum(const struct reader *r)
 {
     struct cells ahead = r->cells;
 
-    return cells_next(&ahead, false) && cells_is(&ahead, "checksum");
+    return takt_cells_next(&ahead, false) && takt_cells_is(&ahead, "checksum");
 }
 
 static bool read_lines(struct reader *r)
 {
-    while (cells_next_line(&r->cells)) {
+    while (takt_cells_next_line(&r->cells)) {
         if (is_checksum(r)) {
-            (void)cells_next(&r->cells, false);
+            (void)takt_cells_next(&r->cells, false);
             return read_checksum(r);
         }
         if (!read_row(r)) {
@@ -258,14 +258,14 @@ static bool check_complete(struct reader *r)
 /* What was found by the numbers alone gets its line, when rows and lines go together. */
 static bool check_numbers(struct reader *r)
 {
-    if (table_check(r->table, r->rules, r->wrong)) {
+    if (takt_table_check(r->table, r->rules, r->wrong)) {
         return true;
     }
     for (uint32_t row = 0; row < r->rows && r->first_line > 0; row++) {
         char name[DIAGNOSTIC_WORD_MAX + 1];
         unsigned same = 0;
 
-        table_name_cell(r->table, row, TABLE_OUTPUTS_MAX, name);
+        takt_table_name_cell(r->table, row, TABLE_OUTPUTS_MAX, name);
         while (name[same] != '\0' && name[same] == r->wrong->word[same]) {
             same++;
         }
@@ -277,8 +277,8 @@ static bool check_numbers(struct reader *r)
     return false;
 }
 
-bool table_read_text(const char *text, size_t length, const struct table_rules *rules,
-                     struct table *table, struct diagnostic *wrong)
+bool takt_table_read_text(const char *text, size_t length, const struct table_rules *rules,
+                          struct table *table, struct diagnostic *wrong)
 {
     struct reader r = {.table = table, .rules = rules, .wrong = wrong};
 
@@ -287,10 +287,10 @@ bool table_read_text(const char *text, size_t length, const struct table_rules *
     for (unsigned i = 0; i < TABLE_INPUTS_MAX; i++) {
         table->knots[i] = 0;
     }
-    cells_open(&r.cells, text, length);
-    if (!cells_next_line(&r.cells)) {
-        return cells_refuse(&r.cells, wrong, TAKT_ERROR_TABLE_OUTPUTS_MISSING, 0.0);
+    takt_cells_open(&r.cells, text, length);
+    if (!takt_cells_next_line(&r.cells)) {
+        return takt_cells_refuse(&r.cells, wrong, TAKT_ERROR_TABLE_OUTPUTS_MISSING, 0.0);
     }
-    return table_header_read(&r.cells, table, &r.header, wrong) && read_lines(&r) &&
+    return takt_table_header_read(&r.cells, table, &r.header, wrong) && read_lines(&r) &&
            check_complete(&r) && check_numbers(&r);
 }

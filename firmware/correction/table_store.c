@@ -27,11 +27,11 @@ static size_t knots_of(const struct table *table)
     return knots;
 }
 
-size_t table_store_size(const struct table *table)
+size_t takt_table_store_size(const struct table *table)
 {
     return STORE_HEAD_SIZE + (size_t)STORE_INPUT_SIZE * table->inputs +
            (size_t)STORE_OUTPUT_SIZE * table->outputs + sizeof(double) * knots_of(table) +
-           sizeof(float) * table_rows(table) * table->outputs + STORE_CRC_SIZE;
+           sizeof(float) * takt_table_rows(table) * table->outputs + STORE_CRC_SIZE;
 }
 
 /* ---- bytes ---- */
@@ -106,9 +106,9 @@ static uint8_t *put_head(uint8_t *at, const struct table *table)
     return at;
 }
 
-void table_store(const struct table *table, uint8_t *bytes)
+void takt_table_store(const struct table *table, uint8_t *bytes)
 {
-    const uint32_t values = table_rows(table) * table->outputs;
+    const uint32_t values = takt_table_rows(table) * table->outputs;
     uint8_t *at = put_head(bytes, table);
 
     for (unsigned i = 0; i < table->inputs; i++) {
@@ -119,12 +119,12 @@ void table_store(const struct table *table, uint8_t *bytes)
     for (uint32_t i = 0; i < values; i++) {
         at = put_float(at, table->value_mm[i]);
     }
-    (void)put(at, crc32_add(CRC32_START, bytes, (size_t)(at - bytes)), STORE_CRC_SIZE);
+    (void)put(at, takt_crc32_add(CRC32_START, bytes, (size_t)(at - bytes)), STORE_CRC_SIZE);
 }
 
 static bool refuse(struct diagnostic *wrong, enum takt_error code)
 {
-    diagnostic_set(wrong, code, 0, 0, "", 0, 0.0);
+    takt_diagnostic_set(wrong, code, 0, 0, "", 0, 0.0);
     return false;
 }
 
@@ -169,13 +169,13 @@ static bool get_head(const uint8_t **at, size_t size, struct table *table)
         return false;
     }
     return get_inputs(at, table) && get_outputs(at, table) &&
-           table_rows(table) <= TABLE_VALUES_MAX / table->outputs &&
-           size == table_store_size(table);
+           takt_table_rows(table) <= TABLE_VALUES_MAX / table->outputs &&
+           size == takt_table_store_size(table);
 }
 
 static void get_numbers(const uint8_t **at, struct table *table)
 {
-    const uint32_t values = table_rows(table) * table->outputs;
+    const uint32_t values = takt_table_rows(table) * table->outputs;
 
     for (unsigned i = 0; i < table->inputs; i++) {
         for (unsigned k = 0; k < table->knots[i]; k++) {
@@ -187,8 +187,8 @@ static void get_numbers(const uint8_t **at, struct table *table)
     }
 }
 
-bool table_restore(const uint8_t *bytes, size_t size, const struct table_rules *rules,
-                   struct table *table, struct diagnostic *wrong)
+bool takt_table_restore(const uint8_t *bytes, size_t size, const struct table_rules *rules,
+                        struct table *table, struct diagnostic *wrong)
 {
     const uint8_t *at = bytes;
 
@@ -196,8 +196,8 @@ bool table_restore(const uint8_t *bytes, size_t size, const struct table_rules *
         return refuse(wrong, TAKT_ERROR_TABLE_DAMAGED);
     }
     get_numbers(&at, table);
-    if (get(&at, STORE_CRC_SIZE) != crc32_add(CRC32_START, bytes, size - STORE_CRC_SIZE)) {
+    if (get(&at, STORE_CRC_SIZE) != takt_crc32_add(CRC32_START, bytes, size - STORE_CRC_SIZE)) {
         return refuse(wrong, TAKT_ERROR_TABLE_CHECKSUM);
     }
-    return table_check(table, rules, wrong);
+    return takt_table_check(table, rules, wrong);
 }

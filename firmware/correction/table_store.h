@@ -9,13 +9,13 @@
 #include "correction/table.h"
 
 /* Bytes that a table takes. */
-size_t table_store_size(const struct table *table);
+size_t takt_table_store_size(const struct table *table);
 
-/* Writes table_store_size bytes. */
-void table_store(const struct table *table, uint8_t *bytes);
+/* Writes takt_table_store_size bytes. */
+void takt_table_store(const struct table *table, uint8_t *bytes);
 
 /* Reads and checks. False: *wrong says why (a wrong checksum among others), and *table holds nothing of use. */
-bool table_restore(const uint8_t *bytes, size_t size, const struct table_rules *rules,
-                   struct table *table, struct diagnostic *wrong);
+bool takt_table_restore(const uint8_t *bytes, size_t size, const struct table_rules *rules,
+                        struct table *table, struct diagnostic *wrong);
 
 #endif

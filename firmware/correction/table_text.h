@@ -18,17 +18,17 @@
  * Reads and checks a table. False: *wrong names line, column and cell, and *table holds nothing of use. The text need not
  * end in zero.
  */
-bool table_read_text(const char *text, size_t length, const struct table_rules *rules,
-                     struct table *table, struct diagnostic *wrong);
+bool takt_table_read_text(const char *text, size_t length, const struct table_rules *rules,
+                          struct table *table, struct diagnostic *wrong);
 
 /*
  * Reads an axis table in the form of LinuxCNC's COMP_FILE: lines of "nominal forward reverse", for the correction of axis
  * itself. type: 0: the actual positions when moving up and down (nominal - actual is corrected); 1: corrections to be
  * added to the motor's position. unit_mm: mm (or rad) per unit of the file. Comments and checks as above.
  */
-bool table_read_triplets(const char *text, size_t length, enum axis axis, unsigned type,
-                         double unit_mm, const struct table_rules *rules, struct table *table,
-                         struct diagnostic *wrong);
+bool takt_table_read_triplets(const char *text, size_t length, enum axis axis, unsigned type,
+                              double unit_mm, const struct table_rules *rules, struct table *table,
+                              struct diagnostic *wrong);
 
 /* Where written text goes. */
 struct table_sink {
@@ -37,7 +37,7 @@ struct table_sink {
 };
 
 /* Writes a table that reads as this one, to 1e-6 um (urad), with its checksum. comment: one line, or NULL. */
-void table_write_text(const struct table *table, const char *comment,
-                      const struct table_sink *sink);
+void takt_table_write_text(const struct table *table, const char *comment,
+                           const struct table_sink *sink);
 
 #endif

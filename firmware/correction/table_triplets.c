@@ -23,19 +23,19 @@ static bool read_triplet(struct cells *cells, double unit_mm, double number[TRIP
 {
     unsigned count = 0;
 
-    while (cells_next(cells, true)) {
+    while (takt_cells_next(cells, true)) {
         double value;
-        const enum takt_error error = cells_number(cells, &value);
+        const enum takt_error error = takt_cells_number(cells, &value);
 
         if (error != TAKT_OK) {
-            return cells_refuse(cells, wrong, error, 0.0);
+            return takt_cells_refuse(cells, wrong, error, 0.0);
         }
         if (count < TRIPLET) {
             number[count] = value * unit_mm;
         }
         count++;
     }
-    return count == TRIPLET || cells_refuse(cells, wrong, TAKT_ERROR_TABLE_TRIPLET, count);
+    return count == TRIPLET || takt_cells_refuse(cells, wrong, TAKT_ERROR_TABLE_TRIPLET, count);
 }
 
 /* Measured where it came to (type 0), what is missing is added; else the file says what to add. */
@@ -55,24 +55,24 @@ static bool add_triplet(struct table *table, const double number[TRIPLET], unsig
     return true;
 }
 
-bool table_read_triplets(const char *text, size_t length, enum axis axis, unsigned type,
-                         double unit_mm, const struct table_rules *rules, struct table *table,
-                         struct diagnostic *wrong)
+bool takt_table_read_triplets(const char *text, size_t length, enum axis axis, unsigned type,
+                              double unit_mm, const struct table_rules *rules, struct table *table,
+                              struct diagnostic *wrong)
 {
     struct cells cells;
     double number[TRIPLET] = {0.0};
 
     open_table(table, axis);
-    cells_open(&cells, text, length);
-    while (cells_next_line(&cells)) {
+    takt_cells_open(&cells, text, length);
+    while (takt_cells_next_line(&cells)) {
         if (!read_triplet(&cells, unit_mm, number, wrong)) {
             return false;
         }
         if (!add_triplet(table, number, type)) {
-            diagnostic_set(wrong, TAKT_ERROR_TABLE_POINTS_MANY, cells.line, 1, &AXIS_LETTERS[axis],
-                           1, TABLE_KNOTS_MAX);
+            takt_diagnostic_set(wrong, TAKT_ERROR_TABLE_POINTS_MANY, cells.line, 1,
+                                &AXIS_LETTERS[axis], 1, TABLE_KNOTS_MAX);
             return false;
         }
     }
-    return table_check(table, rules, wrong);
+    return takt_table_check(table, rules, wrong);
 }

@@ -17,7 +17,7 @@ struct writer {
 
 static void write(struct writer *w, const char *text, size_t length)
 {
-    w->crc = crc32_add(w->crc, text, length);
+    w->crc = takt_crc32_add(w->crc, text, length);
     w->sink->write(w->sink->context, text, length);
 }
 
@@ -34,7 +34,7 @@ static void write_word(struct writer *w, const char *word)
 static void write_number(struct writer *w, double value, unsigned places)
 {
     char digits[DECIMAL_TEXT_MAX];
-    size_t length = decimal_write(digits, value, places);
+    size_t length = takt_decimal_write(digits, value, places);
 
     while (digits[length - 1] == '0') {
         length--;
@@ -100,10 +100,11 @@ static void write_checksum(struct writer *w)
     write_word(w, "\n");
 }
 
-void table_write_text(const struct table *table, const char *comment, const struct table_sink *sink)
+void takt_table_write_text(const struct table *table, const char *comment,
+                           const struct table_sink *sink)
 {
     struct writer w = {sink, CRC32_START};
-    const uint32_t rows = table_rows(table);
+    const uint32_t rows = takt_table_rows(table);
 
     if (comment != NULL) {
         write_word(&w, "# ");

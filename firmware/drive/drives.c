@@ -17,12 +17,12 @@ static void init_axis(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
     const unsigned bus = drives_bus_of(d, index);
-    axis->is_paired = target_pdo_members(d->on_bus[bus], axis->place, d->group) > 1;
+    axis->is_paired = takt_target_pdo_members(d->on_bus[bus], axis->place, d->group) > 1;
     axis->reported = d->cycle - 1;
-    axis->beaten = d->cycle - 1;
+    axis->heartbeat = d->cycle - 1;
     axis->follow_mode = axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
     axis->reset_pending = true;
-    drives_forget_pdos(axis);
+    takt_drives_forget_pdos(axis);
     d->axis_of_node[bus][d->node[index]] = (uint8_t)index;
 }
 
@@ -31,7 +31,7 @@ static void take_times(struct drives *d, const struct drives_config *config)
     d->cycle_us = config->cycle_us;
     d->heartbeat_ms = config->heartbeat_ms;
     d->heartbeat_cycles = (uint32_t)config->heartbeat_ms * 1000 / config->cycle_us;
-    d->heartless_most_cycles =
+    d->heartbeat_age_max_cycles =
         d->heartbeat_cycles > 0 ? d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST : UINT32_MAX;
     d->boot_timeout_cycles = config->boot_timeout_cycles;
     d->start_timeout_cycles = config->start_timeout_cycles;
@@ -65,10 +65,10 @@ static void check_load(struct drives *d, const struct drives_config *config)
         const struct drives_traffic traffic = {d->on_bus[bus], bus,
                                                config->wiring, config->io_count,
                                                config->rates,  config->no_error_pdo};
-        if (drives_predict_whole_load(&traffic, config->cycle_us, &load))
+        if (takt_drives_predict_whole_load(&traffic, config->cycle_us, &load))
             continue;
         d->state = DRIVES_FAULTED;
-        drives_set_overload(&load, bus, &d->fault);
+        takt_drives_set_overload(&load, bus, &d->fault);
     }
 }
 
@@ -82,7 +82,7 @@ static void count_buses(struct drives *d)
     d->bus_count = (uint8_t)(last + 1);
 }
 
-void drives_init(struct drives *d, const struct drives_config *config)
+void takt_drives_init(struct drives *d, const struct drives_config *config)
 {
     assert(config->count <= AXIS_COUNT && config->cycle_us > 0);
     memset(d, 0, sizeof *d);
@@ -91,13 +91,13 @@ void drives_init(struct drives *d, const struct drives_config *config)
     d->controller_node = config->controller_node;
     d->rates = config->rates;
     d->frame_max = config->rates.data > 0 ? CAN_DATA_MAX : CAN_CLASSIC_MAX;
-    d->group = (uint8_t)drives_group_of(&config->rates);
+    d->group = (uint8_t)takt_drives_group_of(&config->rates);
     d->homed = config->homed;
     d->no_error_pdo = config->no_error_pdo;
     d->position_gain_per_s = config->position_gain_per_s;
     take_times(d, config);
-    drives_io_init(d, config);
-    drives_gantry_init(d, config);
+    takt_drives_io_init(d, config);
+    takt_drives_gantry_init(d, config);
     for (unsigned i = 0; i < d->count; i++)
         take_config(d, i, &config->axis[i]);
     count_buses(d);
@@ -119,7 +119,7 @@ static bool cuts_off(enum takt_error error)
            error == TAKT_ERROR_IO_LIMIT;
 }
 
-void drives_brake(struct drives *d)
+void takt_drives_brake(struct drives *d)
 {
     d->state = DRIVES_BRAKING;
     d->stop_cycles = 0;
@@ -130,7 +130,7 @@ void drives_brake(struct drives *d)
 static void leave_operation(struct drives *d, enum takt_error error)
 {
     if (d->state == DRIVES_STARTING || d->stop_timeout_cycles == 0 || cuts_off(error)) {
-        drives_brake(d);
+        takt_drives_brake(d);
         return;
     }
     d->state = DRIVES_STOPPING;
@@ -142,23 +142,23 @@ static void raise(struct drives *d, unsigned index, const struct word *word, enu
                   double value, const char *meaning)
 {
     if (d->state == DRIVES_STOPPING && cuts_off(error))
-        drives_brake(d);
+        takt_drives_brake(d);
     if (d->state > DRIVES_ENABLED)
         return;
     d->fault_axis = index;
-    diagnostic_set(&d->fault, error, 0, 0, word->text, word->length, value);
+    takt_diagnostic_set(&d->fault, error, 0, 0, word->text, word->length, value);
     d->fault.meaning = meaning;
     leave_operation(d, error);
 }
 
-void drives_name_node(struct word *word, unsigned bus, unsigned node)
+void takt_drives_name_node(struct word *word, unsigned bus, unsigned node)
 {
-    word_add_text(word, "node ");
+    takt_word_add_text(word, "node ");
     if (bus > 0) {
-        word_add_number(word, bus);
-        word_add_text(word, ":");
+        takt_word_add_number(word, bus);
+        takt_word_add_text(word, ":");
     }
-    word_add_number(word, node);
+    takt_word_add_number(word, node);
 }
 
 /* "Y (node 2)", "Y2 (node 4)". */
@@ -168,10 +168,10 @@ static void name_axis(const struct drives *d, unsigned index, struct word *word)
     if (drives_is_second(d, index))
         letter[1] = '2';
     word->length = 0;
-    word_add_text(word, letter);
-    word_add_text(word, " (");
-    drives_name_node(word, drives_bus_of(d, index), d->node[index]);
-    word_add_text(word, ")");
+    takt_word_add_text(word, letter);
+    takt_word_add_text(word, " (");
+    takt_drives_name_node(word, drives_bus_of(d, index), d->node[index]);
+    takt_word_add_text(word, ")");
 }
 
 /* A drive that is only warned of, or only without a heartbeat, still follows its setpoints. */
@@ -181,8 +181,8 @@ static bool can_follow(const struct drives_axis *axis, enum takt_error error)
            (error == TAKT_ERROR_DRIVE_FAULT && cia402_is_enabled(axis->statusword));
 }
 
-void drives_raise(struct drives *d, unsigned index, enum takt_error error, double value,
-                  const char *meaning)
+void takt_drives_raise(struct drives *d, unsigned index, enum takt_error error, double value,
+                       const char *meaning)
 {
     struct word word;
 
@@ -191,84 +191,84 @@ void drives_raise(struct drives *d, unsigned index, enum takt_error error, doubl
     raise(d, index, &word, error, value, meaning);
 }
 
-void drives_raise_named(struct drives *d, const struct word *name, enum takt_error error,
-                        double value, const char *meaning)
+void takt_drives_raise_named(struct drives *d, const struct word *name, enum takt_error error,
+                             double value, const char *meaning)
 {
     raise(d, AXIS_COUNT, name, error, value, meaning);
 }
 
 /* "Y (node 2), object 1600:01,". */
-void drives_raise_object(struct drives *d, unsigned index, uint32_t object, enum takt_error error,
-                         double value, const char *meaning)
+void takt_drives_raise_object(struct drives *d, unsigned index, uint32_t object,
+                              enum takt_error error, double value, const char *meaning)
 {
     struct word word;
     name_axis(d, index, &word);
-    word_add_text(&word, ", object ");
-    word_add_hex(&word, sdo_index(object), 4);
-    word_add_text(&word, ":");
-    word_add_hex(&word, sdo_sub(object), 2);
-    word_add_text(&word, ",");
+    takt_word_add_text(&word, ", object ");
+    takt_word_add_hex(&word, sdo_index(object), 4);
+    takt_word_add_text(&word, ":");
+    takt_word_add_hex(&word, sdo_sub(object), 2);
+    takt_word_add_text(&word, ",");
     raise(d, index, &word, error, value, meaning);
 }
 
-void drives_complete_fault(struct drives *d, unsigned index, uint16_t code)
+void takt_drives_complete_fault(struct drives *d, unsigned index, uint16_t code)
 {
     if (d->fault.code != TAKT_ERROR_DRIVE_FAULT || d->fault_axis != index || d->fault.value != 0 ||
         code == EMCY_NONE)
         return;
     d->fault.value = code;
-    d->fault.meaning = emcy_text(code);
+    d->fault.meaning = takt_emcy_text(code);
 }
 
-bool drives_axis_is_enabled(const struct drives_axis *axis)
+bool takt_drives_axis_is_enabled(const struct drives_axis *axis)
 {
     return axis->heard && cia402_is_enabled(axis->statusword);
 }
 
-bool drives_are_watched(const struct drives *d)
+bool takt_drives_are_watched(const struct drives *d)
 {
     return d->state == DRIVES_ENABLED || (d->state == DRIVES_STARTING && d->phase >= DRIVES_SELECT);
 }
 
-double drives_axis_shown(const struct drives_axis *axis, double value_mm)
+double takt_drives_axis_shown(const struct drives_axis *axis, double value_mm)
 {
     return axis->config.axis >= AXIS_LINEAR_COUNT ? value_mm * DEGREES_PER_RAD : value_mm;
 }
 
-double drives_cycles_ms(const struct drives *d, uint32_t cycles)
+double takt_drives_cycles_ms(const struct drives *d, uint32_t cycles)
 {
     return 1e-3 * (double)d->cycle_us * cycles;
 }
 
-bool drives_are_homed(const struct drives *d)
+bool takt_drives_are_homed(const struct drives *d)
 {
     return d->homed;
 }
 
-const struct diagnostic *drives_get_fault(const struct drives *d)
+const struct diagnostic *takt_drives_get_fault(const struct drives *d)
 {
     return &d->fault;
 }
 
-void drives_stop_at_once(struct drives *d, enum takt_error reason)
+void takt_drives_stop_at_once(struct drives *d, enum takt_error reason)
 {
     if (d->state > DRIVES_STOPPING)
         return;
     if (d->state < DRIVES_STOPPING)
-        diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);
-    drives_brake(d);
+        takt_diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);
+    takt_drives_brake(d);
 }
 
-void drives_stop_for(struct drives *d, const struct diagnostic *fault)
+void takt_drives_stop_for(struct drives *d, const struct diagnostic *fault)
 {
     if (d->state > DRIVES_STOPPING)
         return;
     if (d->state < DRIVES_STOPPING)
         d->fault = *fault;
-    drives_brake(d);
+    takt_drives_brake(d);
 }
 
-uint32_t drives_get_given_up(const struct drives *d, enum axis axis)
+uint32_t takt_drives_get_given_up(const struct drives *d, enum axis axis)
 {
     uint32_t given_up = 0;
     for (unsigned i = 0; i < d->count; i++)
@@ -277,15 +277,15 @@ uint32_t drives_get_given_up(const struct drives *d, enum axis axis)
     return given_up;
 }
 
-void drives_stop_on_path(struct drives *d, enum takt_error reason)
+void takt_drives_stop_on_path(struct drives *d, enum takt_error reason)
 {
     if (d->state > DRIVES_ENABLED)
         return;
-    diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);
+    takt_diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);
     leave_operation(d, reason);
 }
 
-uint32_t drives_get_all_given_up(const struct drives *d)
+uint32_t takt_drives_get_all_given_up(const struct drives *d)
 {
     uint32_t given_up = 0;
     for (unsigned i = 0; i < d->count; i++)
@@ -293,7 +293,7 @@ uint32_t drives_get_all_given_up(const struct drives *d)
     return given_up;
 }
 
-void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])
+void takt_drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])
 {
     memset(statusword, 0, AXIS_COUNT * sizeof statusword[0]);
     for (unsigned i = 0; i < d->count; i++)

@@ -3,9 +3,9 @@
  * CANopen frames through a CAN port.
  *
  * Once a cycle, in this order:
- *     drives_receive   everything that has come since the last cycle
- *     drives_sync      SYNC: the drives latch the targets sent last cycle and sample their positions
- *     drives_send      what the state asks for: requests, controlwords, the targets of this cycle
+ *     takt_drives_receive   everything that has come since the last cycle
+ *     takt_drives_sync      SYNC: the drives latch the targets sent last cycle and sample their positions
+ *     takt_drives_send      what the state asks for: requests, controlwords, the targets of this cycle
  *
  *     STARTING --all enabled and homed--> ENABLED --fault--> STOPPING --at rest, or too late--> BRAKING --> FAULTED
  *         +------------------- fault -----------+----- fault that cuts setpoints off ------------^
@@ -28,7 +28,7 @@
 /*
  * Cycles from a setpoint's being sent to the report of the position the drive had when it should have reached it.
  * Sent in cycle k, latched at SYNC k + 1, interpolated to until SYNC k + 2, where the position is sampled; that
- * report is received by drives_receive in cycle k + 3.
+ * report is received by takt_drives_receive in cycle k + 3.
  */
 #define DRIVES_LATENCY_CYCLES 3
 
@@ -103,7 +103,7 @@ struct drives_config {
 
 #define DRIVES_SDO_REPEATS 2
 
-/* A drive that hears no heartbeat for so many periods takes its partner for lost; so do we. */
+/* A drive that hears no heartbeat for this many periods takes its partner for lost; so do we. */
 #define DRIVES_HEARTBEATS_LOST 3
 
 enum drives_state {
@@ -115,7 +115,7 @@ enum drives_state {
 };
 
 /*
- * What the start has done without, since a drive would not have it: bits of drives_get_given_up. A drive that already
+ * What the start has done without, since a drive would not have it: bits of takt_drives_get_given_up. A drive that already
  * is as it should be has nothing given up, even where it refuses to be told.
  */
 enum drives_given_up {
@@ -149,28 +149,28 @@ enum drives_given_up {
 
 #include "drive/drives_state.h"
 
-void drives_init(struct drives *d, const struct drives_config *config);
+void takt_drives_init(struct drives *d, const struct drives_config *config);
 /* port: of every bus on which there is something, by its index. */
-void drives_receive(struct drives *d, const struct can_port *port);
-void drives_sync(struct drives *d, const struct can_port *port);
+void takt_drives_receive(struct drives *d, const struct can_port *port);
+void takt_drives_sync(struct drives *d, const struct can_port *port);
 /*
  * setpoint: of every axis, mm or rad. Followed in DRIVES_ENABLED and DRIVES_STOPPING. In DRIVES_STOPPING the caller
  * lets it come to rest, on the path and within the limits; once it has rested the drives are switched off.
  */
-void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint);
+void takt_drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint);
 
 /* There are I/O nodes. */
 static inline bool drives_have_io(const struct drives *d)
 {
     return d->io_count > 0;
 }
-/* After drives_send: the outputs of the I/O nodes, when they have changed, and now and then. */
-void drives_send_outputs(struct drives *d, const struct can_port *port,
-                         const struct outputs *outputs);
+/* After takt_drives_send: the outputs of the I/O nodes, when they have changed, and now and then. */
+void takt_drives_send_outputs(struct drives *d, const struct can_port *port,
+                              const struct outputs *outputs);
 /* Sets the inputs that I/O nodes are wired to, as they were reported last. The others stay. */
-void drives_add_inputs(const struct drives *d, struct inputs *inputs);
+void takt_drives_add_inputs(const struct drives *d, struct inputs *inputs);
 /* An input of another kind. False: none is wired to it. */
-bool drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high);
+bool takt_drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high);
 
 static inline enum drives_state drives_get_state(const struct drives *d)
 {
@@ -184,44 +184,44 @@ static inline void drives_get_actual(const struct drives *d, struct point *actua
 /*
  * The touch probes of the drives, which latch where they are when the probe touches, or (falls) ceases to. In
  * DRIVES_ENABLED, while the axes rest: arm before the probing move, read after it, each until it is no longer busy.
- * drives_get_latched: axes whose drives have latched take their place in *at, mm or rad; the others stay.
+ * takt_drives_get_latched: axes whose drives have latched take their place in *at, mm or rad; the others stay.
  */
-bool drives_have_probe(const struct drives *d);
-void drives_arm_probe(struct drives *d, bool falls);
-void drives_read_probe(struct drives *d);
+bool takt_drives_have_probe(const struct drives *d);
+void takt_drives_arm_probe(struct drives *d, bool falls);
+void takt_drives_read_probe(struct drives *d);
 static inline bool drives_probe_is_busy(const struct drives *d)
 {
     return d->probing & (DRIVES_PROBE_ARMS | DRIVES_PROBE_READS) && d->state == DRIVES_ENABLED;
 }
 /* They have been armed: in some cycles there was a request by SDO. */
-bool drives_have_probed(const struct drives *d);
-void drives_get_latched(const struct drives *d, struct point *at);
+bool takt_drives_have_probed(const struct drives *d);
+void takt_drives_get_latched(const struct drives *d, struct point *at);
 
 /* All axes that are to be homed have been: what the next configuration may say. */
-bool drives_are_homed(const struct drives *d);
+bool takt_drives_are_homed(const struct drives *d);
 
 /* Bits 1 << enum drives_given_up of an axis; 0 too for axes without a drive. Complete once the drives are enabled. */
-uint32_t drives_get_given_up(const struct drives *d, enum axis axis);
-/* Of any axis. */
-uint32_t drives_get_all_given_up(const struct drives *d);
+uint32_t takt_drives_get_given_up(const struct drives *d, enum axis axis);
+/* Bits that any axis has: all axes' together. */
+uint32_t takt_drives_get_all_given_up(const struct drives *d);
 
 /* Last statusword (object 6041) of every axis; 0 for axes without a drive, or before it has reported. */
-void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT]);
+void takt_drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT]);
 
 /*
- * Every drive brakes by itself, from the next drives_send on, DRIVES_BRAKING; with this error, unless there has been
+ * Every drive brakes by itself, from the next takt_drives_send on, DRIVES_BRAKING; with this error, unless there has been
  * one before.
  */
-void drives_stop_at_once(struct drives *d, enum takt_error reason);
+void takt_drives_stop_at_once(struct drives *d, enum takt_error reason);
 /* The same for a fault that is not of these drives. */
-void drives_stop_for(struct drives *d, const struct diagnostic *fault);
+void takt_drives_stop_for(struct drives *d, const struct diagnostic *fault);
 
 /*
  * The caller brings the setpoint to rest on the path, DRIVES_STOPPING, and then every drive brakes; with this error, unless
  * there has been one before. Drives that do not follow setpoints yet brake at once.
  */
-void drives_stop_on_path(struct drives *d, enum takt_error reason);
-/* An axis that has no drive of these is still on its way: in DRIVES_STOPPING, before drives_send. */
+void takt_drives_stop_on_path(struct drives *d, enum takt_error reason);
+/* An axis that has no drive of these is still on its way: in DRIVES_STOPPING, before takt_drives_send. */
 static inline void drives_await_rest(struct drives *d)
 {
     d->rest_cycles = 0;
@@ -230,10 +230,10 @@ static inline void drives_await_rest(struct drives *d)
  * In DRIVES_FAULTED, between two cycles: drives become "switched on", where there is no torque, instead of staying "switch
  * on disabled". One drive a call; there is one.
  */
-void drives_switch_on_at_rest(struct drives *d, const struct can_port *port);
+void takt_drives_switch_on_at_rest(struct drives *d, const struct can_port *port);
 
 /* What went wrong; meaningful from DRIVES_STOPPING on. */
-const struct diagnostic *drives_get_fault(const struct drives *d);
+const struct diagnostic *takt_drives_get_fault(const struct drives *d);
 
 /*
  * Data lengths, in bytes, of the frames a cycle puts on the bus at most while nothing is wrong: SYNC, the targets, a
@@ -242,8 +242,8 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
  * has_errors: with that TPDO2.
  */
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
-unsigned drives_cycle_frames(unsigned count, unsigned group, bool has_errors,
-                             uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
+unsigned takt_drives_cycle_frames(unsigned count, unsigned group, bool has_errors,
+                                  uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
 /*
  * The PDOs of a bus as the start has found them: a frame of each drive's status, position and target, of targets in groups one; of
@@ -262,11 +262,11 @@ struct drives_pdo {
     enum drives_pdo_kind kind;
 };
 #define DRIVES_CYCLE_PDOS_MAX (4 * AXIS_COUNT + 3 * IO_NODES_MAX)
-unsigned drives_get_pdos(const struct drives *d, unsigned bus,
-                         struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
+unsigned takt_drives_get_pdos(const struct drives *d, unsigned bus,
+                              struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
 
 /* There are nodes on this bus that are asked for their state: of some cycles that takes a frame and its answer. */
-bool drives_are_guarding(const struct drives *d, unsigned bus);
+bool takt_drives_are_guarding(const struct drives *d, unsigned bus);
 
 /* What a frame of this identifier tells in every cycle on its bus. */
 enum drives_report {
@@ -274,7 +274,7 @@ enum drives_report {
     DRIVES_REPORTS_POSITION = 2,
     DRIVES_REPORTS_ALL = 3
 };
-unsigned drives_get_report(const struct drives *d, unsigned bus, uint16_t id);
+unsigned takt_drives_get_report(const struct drives *d, unsigned bus, uint16_t id);
 
 /* What a cycle takes of a bus, in bits of the nominal rate. */
 struct drives_load {
@@ -284,11 +284,11 @@ struct drives_load {
 };
 
 /* The same for the PDOs that the start has found: of the last start, complete once the drives are enabled. */
-void drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load);
+void takt_drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load);
 
 /* True: the bus carries the cycle, with targets in groups. count: drives. */
-bool drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
-                         struct drives_load *load);
+bool takt_drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
+                              struct drives_load *load);
 
 /* What is on a bus: drives, and of all I/O nodes those that are on it, with as many inputs and outputs as are wired. */
 struct drives_traffic {
@@ -301,10 +301,11 @@ struct drives_traffic {
 };
 
 /* The same for that. */
-bool drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
-                               struct drives_load *load);
+bool takt_drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
+                                    struct drives_load *load);
 
 /* BUS_OVERLOAD, with the figures and the bus if it is not the first, in words for *fault. */
-void drives_set_overload(const struct drives_load *load, unsigned bus, struct diagnostic *fault);
+void takt_drives_set_overload(const struct drives_load *load, unsigned bus,
+                              struct diagnostic *fault);
 
 #endif

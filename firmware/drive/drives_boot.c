@@ -17,15 +17,15 @@
 #define UINT32_LIMIT 4294967295.0
 #define INT32_LIMIT  2147483647.0
 
-void drives_give_up(struct drives *d, unsigned index, enum drives_given_up what)
+void takt_drives_give_up(struct drives *d, unsigned index, enum drives_given_up what)
 {
     d->axis[index].given_up |= 1u << what;
 }
 
 static void raise_refusal(struct drives *d, uint32_t object, uint32_t abort_code)
 {
-    drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_REFUSES, abort_code,
-                        sdo_abort_text(abort_code));
+    takt_drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_REFUSES, abort_code,
+                             takt_sdo_abort_text(abort_code));
 }
 
 /* ---- What it is asked ---- */
@@ -42,7 +42,7 @@ static const uint32_t asked[] = {
 };
 #define ASKED_COUNT (sizeof asked / sizeof asked[0])
 
-bool drives_next_ask(struct drives *d, struct drives_step *step)
+bool takt_drives_next_ask(struct drives *d, struct drives_step *step)
 {
     bool checks_scaling = d->axis[d->at_axis].config.travel_per_turn_mm > 0;
     if (d->at_step == (checks_scaling ? ASKED_COUNT : ASKED_SCALING))
@@ -51,13 +51,13 @@ bool drives_next_ask(struct drives *d, struct drives_step *step)
     return true;
 }
 
-/* Of another type it is a drive all the same, if it tells modes or names no profile: see take_modes. */
+/* A node of another type is a drive all the same, if it tells modes or names no profile: see take_modes. */
 static void take_type(struct drives *d, const struct drives_answer *answer)
 {
     const bool is_told = answer->abort_code == SDO_ABORT_NONE;
     d->read[0] = is_told ? answer->value : 0;
     if ((d->read[0] & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_402)
-        drives_give_up(d, d->at_axis, DRIVES_NO_TYPE);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_TYPE);
 }
 
 static void take_identity(struct drives *d, const struct drives_answer *answer)
@@ -75,7 +75,7 @@ static void take_identity(struct drives *d, const struct drives_answer *answer)
     if (answer->abort_code != SDO_ABORT_NONE)
         raise_refusal(d, asked[d->at_step], answer->abort_code);
     else
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_IDENTITY, answer->value, texts[part]);
+        takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_IDENTITY, answer->value, texts[part]);
 }
 
 static uint16_t mode_bit(unsigned mode)
@@ -102,17 +102,17 @@ static void take_modes(struct drives *d, const struct drives_answer *answer)
     if (answer->abort_code != SDO_ABORT_NONE || answer->value == 0) {
         axis->modes = mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION) |
                       mode_bit(CIA402_MODE_PROFILE_VELOCITY) | mode_bit(CIA402_MODE_HOMING);
-        drives_give_up(d, d->at_axis, DRIVES_NO_MODES);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_MODES);
         if (is_something_else(d->read[0]))
-            drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, d->read[0], NULL);
+            takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, d->read[0], NULL);
     }
-    axis->follow_mode = drives_mode_after(axis, CIA402_MODE_NONE);
+    axis->follow_mode = takt_drives_mode_after(axis, CIA402_MODE_NONE);
     if (axis->follow_mode == CIA402_MODE_NONE)
         missing = "cyclic position or velocity";
     else if (axis->config.homing.order != 0 && !(axis->modes & mode_bit(CIA402_MODE_HOMING)))
         missing = "homing";
     if (missing != NULL)
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODES, answer->value, missing);
+        takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODES, answer->value, missing);
 }
 
 /*
@@ -142,14 +142,14 @@ static void check_scaling(struct drives *d)
     double rounding = 0;
     double units = units_per_turn(d->read, &rounding);
     if (units <= 0) {
-        drives_give_up(d, d->at_axis, DRIVES_NO_SCALING);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_SCALING);
     } else if (maths_abs(units - expected) > rounding) {
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_SCALING, units, NULL);
-        diagnostic_set_limit(&d->fault, expected);
+        takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_SCALING, units, NULL);
+        takt_diagnostic_set_limit(&d->fault, expected);
     }
 }
 
-void drives_take_ask(struct drives *d, const struct drives_answer *answer)
+void takt_drives_take_ask(struct drives *d, const struct drives_answer *answer)
 {
     if (d->at_step == 0)
         take_type(d, answer);
@@ -224,7 +224,7 @@ static void split_period(uint32_t cycle_us, uint32_t *value, int *exponent)
 /* units = round(value * velocity_units_per_mm_s) of a velocity or an acceleration. */
 static uint32_t velocity_of(const struct drives_config_axis *config, double value_mm_s)
 {
-    double units = maths_round(value_mm_s * maths_abs(config->velocity_units_per_mm_s));
+    double units = takt_maths_round(value_mm_s * maths_abs(config->velocity_units_per_mm_s));
     return (uint32_t)maths_clamp(units, 0, UINT32_LIMIT);
 }
 
@@ -245,7 +245,7 @@ static uint32_t home_offset_of(const struct drives_config_axis *config)
 {
     const struct drives_homing *homing = &config->homing;
     double offset_mm = homing->offset_is_position ? homing->offset_mm : -homing->offset_mm;
-    double offset_inc = maths_round(offset_mm * config->increments_per_mm);
+    double offset_inc = takt_maths_round(offset_mm * config->increments_per_mm);
     return (uint32_t)(int32_t)maths_clamp(offset_inc, -INT32_LIMIT, INT32_LIMIT);
 }
 
@@ -260,7 +260,7 @@ static uint32_t value_of(const struct drives *d, unsigned number)
     split_period(d->cycle_us, &period, &exponent);
     const uint32_t values[] = {d->heartbeat_ms,
                                (uint32_t)d->controller_node << 16 | lost_ms,
-                               drives_guard_ms(d),
+                               takt_drives_guard_ms(d),
                                DRIVES_HEARTBEATS_LOST,
                                SYNC_COB_ID,
                                0,
@@ -288,7 +288,7 @@ static bool is_mute(const struct drives *d)
            d->heartbeat_ms > 0;
 }
 
-bool drives_next_set(struct drives *d, struct drives_step *step)
+bool takt_drives_next_set(struct drives *d, struct drives_step *step)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (d->at_step == SET_GUARD && !is_mute(d))
@@ -326,7 +326,7 @@ static void miss(struct drives *d, const struct drives_answer *answer)
     if (setting->given_up == NOTHING)
         return;
     if (!is_required)
-        drives_give_up(d, d->at_axis, (enum drives_given_up)setting->given_up);
+        takt_drives_give_up(d, d->at_axis, (enum drives_given_up)setting->given_up);
     else if (!is_absent || (value_of(d, d->at_step) != 0 && d->at_step != SET_SYNC))
         raise_refusal(d, SDO_OBJECT(setting->index, setting->sub),
                       answer->abort_code != SDO_ABORT_NONE ? answer->abort_code : SDO_ABORT_VALUE);
@@ -349,7 +349,7 @@ static void take_guard(struct drives *d, uint32_t factor)
     if (!guard->is_on)
         return;
     take_back(d, DRIVES_NO_HEARTBEAT);
-    drives_give_up(d, d->at_axis, DRIVES_GUARDED);
+    takt_drives_give_up(d, d->at_axis, DRIVES_GUARDED);
     if (life_ms > 0)
         take_back(d, DRIVES_NO_WATCH);
 }
@@ -369,8 +369,8 @@ static void check_period(struct drives *d)
     bool is_used = d->axis[d->at_axis].follow_mode != CIA402_MODE_PROFILE_VELOCITY;
     if (!is_used || period_us <= 0 || maths_abs(period_us - d->cycle_us) <= 0.5)
         return;
-    drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_PERIOD, period_us, NULL);
-    diagnostic_set_limit(&d->fault, d->cycle_us);
+    takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_PERIOD, period_us, NULL);
+    takt_diagnostic_set_limit(&d->fault, d->cycle_us);
 }
 
 /* What the drive has: read after a refusal, else what it has been told. */
@@ -410,7 +410,7 @@ static uint32_t mask_of(const struct setting *setting)
     return setting->length == 4 ? UINT32_MAX : (1u << 8 * setting->length) - 1;
 }
 
-void drives_take_set(struct drives *d, const struct drives_answer *answer)
+void takt_drives_take_set(struct drives *d, const struct drives_answer *answer)
 {
     const struct setting *setting = &settings[d->at_step];
     uint32_t wanted = value_of(d, d->at_step) & mask_of(setting);

@@ -6,24 +6,25 @@
 #include "canopen/emcy.h"
 #include "drive/drives_private.h"
 
-/* A drive stands when for so many reports it has moved no more than this in each, mm or rad, or an increment. */
+/* A drive stands when in each of this many reports it has moved by REST_MM (mm or rad), or an increment, at most. */
 #define REST_REPORTS 10
 #define REST_MM      1e-5
 
-void drives_raise_reported(struct drives *d, unsigned index, uint16_t code)
+void takt_drives_raise_reported(struct drives *d, unsigned index, uint16_t code)
 {
-    drives_raise(d, index, TAKT_ERROR_DRIVE_FAULT, code,
-                 code != EMCY_NONE ? emcy_text(code) : "a fault without a code");
+    takt_drives_raise(d, index, TAKT_ERROR_DRIVE_FAULT, code,
+                      code != EMCY_NONE ? takt_emcy_text(code) : "a fault without a code");
 }
 
 static void raise_state(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
-    enum cia402_state state = cia402_state(axis->statusword);
+    enum cia402_state state = takt_cia402_state(axis->statusword);
     if (state == CIA402_FAULT || state == CIA402_FAULT_REACTION)
-        drives_raise_reported(d, index, axis->emcy_code);
+        takt_drives_raise_reported(d, index, axis->emcy_code);
     else
-        drives_raise(d, index, TAKT_ERROR_DRIVE_STATE, axis->statusword, cia402_state_text(state));
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_STATE, axis->statusword,
+                          takt_cia402_state_text(state));
 }
 
 static inline bool is_silent(const struct drives *d, const struct drives_axis *axis)
@@ -37,11 +38,11 @@ static void raise_link(struct drives *d, unsigned index)
     if (!cia402_is_enabled(axis->statusword))
         raise_state(d, index);
     else if (is_silent(d, axis))
-        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
-                     drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
+                          takt_drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else
-        drives_raise(d, index, TAKT_ERROR_DRIVE_HEARTBEAT,
-                     drives_cycles_ms(d, drives_heartless_cycles(d, axis)), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HEARTBEAT,
+                          takt_drives_cycles_ms(d, drives_heartbeat_age_cycles(d, axis)), NULL);
 }
 
 static inline bool check_links(struct drives *d, unsigned index)
@@ -52,7 +53,7 @@ static inline bool check_links(struct drives *d, unsigned index)
     return false;
 }
 
-bool drives_check_links(struct drives *d, unsigned index)
+bool takt_drives_check_links(struct drives *d, unsigned index)
 {
     return check_links(d, index);
 }
@@ -80,7 +81,8 @@ static inline void check_following(struct drives *d, unsigned index, double set_
     struct drives_axis *axis = &d->axis[index];
     double lag_mm = maths_abs(set_mm - axis->actual_mm);
     if (lag_mm > allowed_lag_mm(d, axis))
-        drives_raise(d, index, TAKT_ERROR_DRIVE_FOLLOWING, drives_axis_shown(axis, lag_mm), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_FOLLOWING,
+                          takt_drives_axis_shown(axis, lag_mm), NULL);
     if (d->state == DRIVES_ENABLED)
         axis->lag_mm = lag_mm;
 }
@@ -91,27 +93,27 @@ static inline void check_following(struct drives *d, unsigned index, double set_
  */
 static unsigned count_well(struct drives *d, const double *set_mm)
 {
-    const uint32_t cycle = d->cycle, most = d->heartless_most_cycles;
+    const uint32_t cycle = d->cycle, most = d->heartbeat_age_max_cycles;
     unsigned i = 0;
     for (; i < d->count; i++) {
         struct drives_axis *axis = &d->axis[i];
         double lag_mm = maths_abs(set_mm[i] - axis->actual_mm);
         if (!cia402_is_enabled(axis->statusword) || axis->reported != cycle ||
-            cycle - axis->beaten > most || lag_mm > axis->config.following_error_max_mm)
+            cycle - axis->heartbeat > most || lag_mm > axis->config.following_error_max_mm)
             break;
         axis->lag_mm = lag_mm;
     }
     return i;
 }
 
-void drives_check_operation(struct drives *d)
+void takt_drives_check_operation(struct drives *d)
 {
     const double *set_mm = drives_sent(d, DRIVES_LATENCY_CYCLES);
     for (unsigned i = d->state == DRIVES_ENABLED ? count_well(d, set_mm) : 0; i < d->count; i++)
         if (check_links(d, i) && drives_silent_cycles(d, &d->axis[i]) == 0)
             check_following(d, i, set_mm[i]);
     if (d->gantry_count > 0)
-        drives_check_skew(d);
+        takt_drives_check_skew(d);
 }
 
 static bool setpoint_moves(const struct drives *d, unsigned index)
@@ -129,7 +131,7 @@ static bool is_lost(const struct drives *d, const struct drives_axis *axis)
  * Setpoints have come to rest when they have not changed for as long as a report takes. Where a lost axis has to move,
  * the path is left anyway, and least if all brake as hard as they can.
  */
-void drives_watch_stop(struct drives *d)
+void takt_drives_watch_stop(struct drives *d)
 {
     bool at_rest = true;
     bool leaves_path = false;
@@ -141,12 +143,12 @@ void drives_watch_stop(struct drives *d)
     d->rest_cycles = at_rest ? d->rest_cycles + 1 : 0;
     if (leaves_path || d->rest_cycles >= DRIVES_LATENCY_CYCLES ||
         d->stop_cycles++ >= d->stop_timeout_cycles)
-        drives_brake(d);
+        takt_drives_brake(d);
 }
 
 static bool is_switched_off(const struct drives_axis *axis)
 {
-    switch (cia402_state(axis->statusword)) {
+    switch (takt_cia402_state(axis->statusword)) {
     case CIA402_SWITCH_ON_DISABLED:
     case CIA402_READY:
     case CIA402_SWITCHED_ON:
@@ -172,7 +174,7 @@ static bool rests(const struct drives *d, struct drives_axis *axis)
     return !axis->started || axis->rest_cycles >= REST_REPORTS;
 }
 
-void drives_watch_brakes(struct drives *d)
+void takt_drives_watch_brakes(struct drives *d)
 {
     bool all = true;
     for (unsigned i = 0; i < d->count; i++)

@@ -19,20 +19,20 @@ static bool is_compared(const struct concise_dcf *dcf, uint32_t behind,
 {
     const uint16_t index = sdo_index(entry->object);
     return index != OBJECT_STORE && index != OBJECT_RESTORE &&
-           !concise_dcf_has(dcf, behind, entry->object);
+           !takt_concise_dcf_has(dcf, behind, entry->object);
 }
 
 /* The entry at the cursor, or the first behind it that counts in this pass; the cursor stays in front of it. */
 static bool find_entry(struct drives *d, struct concise_dcf_entry *entry, uint32_t *behind)
 {
     const struct concise_dcf *dcf = d->axis[d->at_axis].config.dcf;
-    for (*behind = d->dcf.at; concise_dcf_next(dcf, behind, entry); d->dcf.at = *behind)
+    for (*behind = d->dcf.at; takt_concise_dcf_next(dcf, behind, entry); d->dcf.at = *behind)
         if (d->dcf.writes || is_compared(dcf, *behind, entry))
             return true;
     return false;
 }
 
-bool drives_ask_dcf(struct drives *d)
+bool takt_drives_ask_dcf(struct drives *d)
 {
     const uint8_t node = d->node[d->at_axis];
     struct concise_dcf_entry entry;
@@ -40,10 +40,10 @@ bool drives_ask_dcf(struct drives *d)
     if (d->axis[d->at_axis].config.dcf == NULL || !find_entry(d, &entry, &behind))
         return false;
     if (d->dcf.writes)
-        sdo_client_download(&d->sdo, node, entry.object, entry.value, entry.size,
-                            d->sdo_timeout_cycles);
+        takt_sdo_client_download(&d->sdo, node, entry.object, entry.value, entry.size,
+                                 d->sdo_timeout_cycles);
     else
-        sdo_client_upload(&d->sdo, node, entry.object, d->sdo_timeout_cycles);
+        takt_sdo_client_upload(&d->sdo, node, entry.object, d->sdo_timeout_cycles);
     d->sdo_bus = (uint8_t)drives_bus_of(d, d->at_axis);
     return true;
 }
@@ -54,15 +54,15 @@ static bool is_same(const struct sdo_client *sdo, const struct concise_dcf_entry
            memcmp(sdo->value, entry->value, entry->size) == 0;
 }
 
-void drives_take_dcf(struct drives *d)
+void takt_drives_take_dcf(struct drives *d)
 {
     struct concise_dcf_entry entry;
     uint32_t behind;
     if (!find_entry(d, &entry, &behind))
         return;
     if (d->dcf.writes && d->sdo.result == SDO_ABORTED)
-        drives_raise_object(d, d->at_axis, entry.object, TAKT_ERROR_DRIVE_REFUSES,
-                            d->sdo.abort_code, sdo_abort_text(d->sdo.abort_code));
+        takt_drives_raise_object(d, d->at_axis, entry.object, TAKT_ERROR_DRIVE_REFUSES,
+                                 d->sdo.abort_code, takt_sdo_abort_text(d->sdo.abort_code));
     if (d->dcf.writes || is_same(&d->sdo, &entry)) {
         d->dcf.at = behind;
         return;

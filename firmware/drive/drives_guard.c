@@ -12,20 +12,20 @@
 
 #define ANSWER_LENGTH 1
 
-uint32_t drives_guard_cycles(const struct drives *d)
+uint32_t takt_drives_guard_cycles(const struct drives *d)
 {
     const uint32_t nodes = d->count + d->io_count;
     return d->heartbeat_cycles > nodes ? d->heartbeat_cycles : nodes;
 }
 
 /* Rounded up: the node must not be told less than passes. */
-uint32_t drives_guard_ms(const struct drives *d)
+uint32_t takt_drives_guard_ms(const struct drives *d)
 {
-    return (drives_guard_cycles(d) * d->cycle_us + 999) / 1000;
+    return (takt_drives_guard_cycles(d) * d->cycle_us + 999) / 1000;
 }
 
 /* The first answer has toggle bit 0. */
-void drives_begin_guard(struct drives *d, struct drives_guard *guard)
+void takt_drives_begin_guard(struct drives *d, struct drives_guard *guard)
 {
     d->guards = d->guards || guard->is_on;
     guard->toggle = NMT_TOGGLE;
@@ -45,9 +45,9 @@ static const struct drives_guard *guard_of(const struct drives *d, unsigned k, u
 }
 
 /* One that is refused is missed, as if it had got lost. */
-void drives_send_guard(struct drives *d, const struct can_port *port)
+void takt_drives_send_guard(struct drives *d, const struct can_port *port)
 {
-    const unsigned turn = d->cycle % drives_guard_cycles(d);
+    const unsigned turn = d->cycle % takt_drives_guard_cycles(d);
     const struct drives_guard *guard = NULL;
     struct can_frame frame;
     unsigned bus = 0;
@@ -56,7 +56,7 @@ void drives_send_guard(struct drives *d, const struct can_port *port)
         guard = guard_of(d, turn, &bus, &node);
     if (guard == NULL || !guard->is_on)
         return;
-    nmt_write_guard(&frame, node);
+    takt_nmt_write_guard(&frame, node);
     (void)drives_send_frame(&port[bus], &frame);
 }
 
@@ -70,12 +70,12 @@ static bool has_guard(const struct drives *d, unsigned bus)
     return is_any;
 }
 
-bool drives_are_guarding(const struct drives *d, unsigned bus)
+bool takt_drives_are_guarding(const struct drives *d, unsigned bus)
 {
     return d->guards && has_guard(d, bus);
 }
 
-uint32_t drives_guard_bits(const struct drives *d, unsigned bus)
+uint32_t takt_drives_guard_bits(const struct drives *d, unsigned bus)
 {
-    return has_guard(d, bus) ? drives_remote_bits() + drives_bits(d, ANSWER_LENGTH) : 0;
+    return has_guard(d, bus) ? takt_drives_remote_bits() + drives_bits(d, ANSWER_LENGTH) : 0;
 }

@@ -33,34 +33,34 @@ static uint8_t next_order(const struct drives *d)
 static void select_mode(struct drives_axis *axis, bool is_homing)
 {
     if (axis->mode == CIA402_MODE_HOMING)
-        drives_rest(axis);
+        takt_drives_rest(axis);
     axis->mode = is_homing ? CIA402_MODE_HOMING : axis->follow_mode;
     axis->command = 0;
 }
 
-void drives_home_next(struct drives *d)
+void takt_drives_home_next(struct drives *d)
 {
     uint8_t order = next_order(d);
     for (unsigned i = 0; i < d->count; i++)
         select_mode(&d->axis[i], order != 0 && d->axis[i].config.homing.order == order);
     d->home_order = order;
     d->homed = order == 0;
-    drives_enter_phase(d, DRIVES_SELECT);
+    takt_drives_enter_phase(d, DRIVES_SELECT);
 }
 
-void drives_check_all_links(struct drives *d)
+void takt_drives_check_all_links(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
         if (!drives_is_linked(d, &d->axis[i]))
-            (void)drives_check_links(d, i);
+            (void)takt_drives_check_links(d, i);
 }
 
 static bool is_late(const struct drives *d)
 {
-    return drives_cycles_ms(d, d->phase_cycles) > MODE_TIMEOUT_MS;
+    return takt_drives_cycles_ms(d, d->phase_cycles) > MODE_TIMEOUT_MS;
 }
 
-void drives_enter_enabled(struct drives *d)
+void takt_drives_enter_enabled(struct drives *d)
 {
     d->state = DRIVES_ENABLED;
     for (unsigned i = 0; i < d->count; i++)
@@ -86,18 +86,18 @@ static bool follows(const struct drives *d, struct drives_axis *axis)
     return axis->controlword == told && axis->statusword & CIA402_INTERPOLATES;
 }
 
-void drives_follow(struct drives *d)
+void takt_drives_follow(struct drives *d)
 {
     bool all = true;
-    drives_check_all_links(d);
+    takt_drives_check_all_links(d);
     for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
         bool is_following = follows(d, &d->axis[i]);
         if (!is_following && is_late(d))
-            drives_raise(d, i, TAKT_ERROR_DRIVE_MODE, d->axis[i].mode, NULL);
+            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_MODE, d->axis[i].mode, NULL);
         all = all && is_following;
     }
     if (all && d->state == DRIVES_STARTING)
-        drives_begin_square(d);
+        takt_drives_begin_square(d);
 }
 
 /* All show their modes: those that are to be homed begin; without any the drives are ready. */
@@ -113,9 +113,9 @@ static void begin_homing(struct drives *d)
         axis->homing_seen = false;
         axis->homed = false;
     }
-    drives_enter_phase(d, is_any ? DRIVES_HOME : DRIVES_FOLLOW);
+    takt_drives_enter_phase(d, is_any ? DRIVES_HOME : DRIVES_FOLLOW);
     if (!is_any)
-        drives_follow(d);
+        takt_drives_follow(d);
 }
 
 /* The drive shows its mode, or cannot. */
@@ -123,37 +123,37 @@ static bool shows_mode(struct drives *d)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (d->sdo.result == SDO_ABORTED)
-        drives_give_up(d, d->at_axis, DRIVES_NO_MODE_DISPLAY);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_MODE_DISPLAY);
     return d->sdo.result == SDO_ABORTED ||
-           (d->sdo.result == SDO_DONE && (uint8_t)sdo_client_number(&d->sdo) == axis->mode);
+           (d->sdo.result == SDO_DONE && (uint8_t)takt_sdo_client_number(&d->sdo) == axis->mode);
 }
 
 /* Modes are not in the statusword: object 6061 is read, of one drive after the other, until it agrees. */
-void drives_select(struct drives *d)
+void takt_drives_select(struct drives *d)
 {
     const uint32_t object = SDO_OBJECT(CIA402_MODE_DISPLAY >> 16, 0);
-    drives_check_all_links(d);
+    takt_drives_check_all_links(d);
     if (d->state != DRIVES_STARTING)
         return;
     if (d->is_telling || sdo_client_is_busy(&d->sdo)) {
         if (d->is_telling && is_late(d))
-            drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
+            takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
         return;
     }
     if (shows_mode(d)) {
         d->at_axis++;
         d->phase_cycles = 0;
     } else if (is_late(d)) {
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
+        takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
         return;
     }
     if (d->at_axis == d->count)
         begin_homing(d);
-    else if (drives_tells_mode(&d->axis[d->at_axis]))
+    else if (takt_drives_tells_mode(&d->axis[d->at_axis]))
         d->sdo.result = SDO_IDLE;
     else
-        drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis],
-                   &(struct drives_step){.object = object});
+        takt_drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis],
+                        &(struct drives_step){.object = object});
 }
 
 /* Farthest from its home that a drive stands when it has braked from there, mm: v^2 / (2 a) of the faster velocity. */
@@ -179,8 +179,8 @@ static void take_home(struct drives *d, unsigned index)
     struct drives_axis *axis = &d->axis[index];
     axis->homed = true;
     if (is_mirrored(axis))
-        drives_raise(d, index, TAKT_ERROR_DRIVE_HOME_OFFSET,
-                     drives_axis_shown(axis, axis->actual_mm), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HOME_OFFSET,
+                          takt_drives_axis_shown(axis, axis->actual_mm), NULL);
 }
 
 static void follow_homing(struct drives *d, unsigned index)
@@ -189,22 +189,23 @@ static void follow_homing(struct drives *d, unsigned index)
     const uint16_t done = CIA402_HOMING_ATTAINED | CIA402_TARGET_REACHED;
     bool is_told = axis->controlword == (CIA402_ENABLE_OPERATION | CIA402_START_HOMING);
     bool is_done = is_told && (axis->statusword & done) == done;
-    double since_ms = drives_cycles_ms(d, d->phase_cycles);
+    double since_ms = takt_drives_cycles_ms(d, d->phase_cycles);
     if (is_told && !is_done)
         axis->homing_seen = true;
     if (is_told && since_ms >= HOMING_SHOWN_MS && axis->statusword & CIA402_HOMING_ERROR)
-        drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING, axis->statusword, NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING, axis->statusword, NULL);
     else if (d->phase_cycles > axis->config.homing.timeout_cycles)
-        drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING_SLOW,
-                     1e-3 * drives_cycles_ms(d, axis->config.homing.timeout_cycles), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING_SLOW,
+                          1e-3 * takt_drives_cycles_ms(d, axis->config.homing.timeout_cycles),
+                          NULL);
     if (is_done && (axis->homing_seen || since_ms >= HOMING_SHOWN_MS))
         take_home(d, index);
 }
 
-void drives_home(struct drives *d)
+void takt_drives_home(struct drives *d)
 {
     bool all = true;
-    drives_check_all_links(d);
+    takt_drives_check_all_links(d);
     for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
         if (d->axis[i].mode != CIA402_MODE_HOMING)
             continue;
@@ -213,5 +214,5 @@ void drives_home(struct drives *d)
         all = all && d->axis[i].homed;
     }
     if (all && d->state == DRIVES_STARTING)
-        drives_home_next(d);
+        takt_drives_home_next(d);
 }

@@ -40,7 +40,7 @@ static uint16_t find_inputs(const struct io_wiring *wiring, unsigned mask, unsig
     return (uint16_t)found;
 }
 
-void drives_io_init(struct drives *d, const struct drives_config *config)
+void takt_drives_io_init(struct drives *d, const struct drives_config *config)
 {
     assert(config->io_count <= IO_NODES_MAX);
     d->io_count = (uint8_t)config->io_count;
@@ -60,7 +60,7 @@ void drives_io_init(struct drives *d, const struct drives_config *config)
 static struct word name_of(const struct drives *d, unsigned i)
 {
     struct word word = {.length = 0};
-    drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
+    takt_drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
     return word;
 }
 
@@ -68,7 +68,7 @@ static void raise(struct drives *d, unsigned i, enum takt_error error, double va
                   const char *meaning)
 {
     const struct word word = name_of(d, i);
-    drives_raise_named(d, &word, error, value, meaning);
+    takt_drives_raise_named(d, &word, error, value, meaning);
 }
 
 /* "node 20, object 1017:00,". */
@@ -76,12 +76,12 @@ static void raise_object(struct drives *d, unsigned i, enum takt_error error, do
                          const char *meaning)
 {
     struct word word = name_of(d, i);
-    word_add_text(&word, ", object ");
-    word_add_hex(&word, sdo_index(d->sdo.object), 4);
-    word_add_text(&word, ":");
-    word_add_hex(&word, sdo_sub(d->sdo.object), 2);
-    word_add_text(&word, ",");
-    drives_raise_named(d, &word, error, value, meaning);
+    takt_word_add_text(&word, ", object ");
+    takt_word_add_hex(&word, sdo_index(d->sdo.object), 4);
+    takt_word_add_text(&word, ":");
+    takt_word_add_hex(&word, sdo_sub(d->sdo.object), 2);
+    takt_word_add_text(&word, ",");
+    takt_drives_raise_named(d, &word, error, value, meaning);
 }
 
 /* "bit 4 of I/O node 20", of the first of these bits. */
@@ -91,11 +91,11 @@ static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsig
     unsigned bit = 0;
     while (!(bits >> bit & 1))
         bit++;
-    word_add_text(&word, "bit ");
-    word_add_number(&word, bit);
-    word_add_text(&word, " of I/O ");
-    drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
-    drives_raise_named(d, &word, error, bit, NULL);
+    takt_word_add_text(&word, "bit ");
+    takt_word_add_number(&word, bit);
+    takt_word_add_text(&word, " of I/O ");
+    takt_drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
+    takt_drives_raise_named(d, &word, error, bit, NULL);
 }
 
 /* ---- The start ---- */
@@ -103,17 +103,17 @@ static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsig
 static bool send_nmt(const struct drives *d, const struct can_port *port, unsigned i,
                      enum nmt_command command)
 {
-    return drives_send_nmt(&port[drives_io_bus_of(d, i)], command, d->wiring[i].node);
+    return takt_drives_send_nmt(&port[drives_io_bus_of(d, i)], command, d->wiring[i].node);
 }
 
-void drives_io_send_resets(struct drives *d, const struct can_port *port)
+void takt_drives_io_send_resets(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->io_count; i++)
         if (d->io[i].reset_pending && send_nmt(d, port, i, NMT_RESET_COMMUNICATION))
             d->io[i].reset_pending = false;
 }
 
-bool drives_io_boot(struct drives *d)
+bool takt_drives_io_boot(struct drives *d)
 {
     bool all = true;
     for (unsigned i = 0; i < d->io_count; i++) {
@@ -123,8 +123,8 @@ bool drives_io_boot(struct drives *d)
         if (d->phase_cycles == d->boot_timeout_cycles)
             d->io[i].reset_pending = true;
         else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
-            raise(d, i, TAKT_ERROR_IO_ABSENT, 2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles),
-                  NULL);
+            raise(d, i, TAKT_ERROR_IO_ABSENT,
+                  2e-3 * takt_drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
     }
     return all;
 }
@@ -166,7 +166,7 @@ static uint32_t value_of(const struct drives *d)
     case STEP_WATCH:
         return (uint32_t)d->controller_node << 16 | lost_ms;
     case STEP_GUARD:
-        return drives_guard_ms(d);
+        return takt_drives_guard_ms(d);
     case STEP_LIFE:
         return DRIVES_HEARTBEATS_LOST;
     default:
@@ -196,7 +196,7 @@ static bool ask_next(struct drives *d)
         if (d->at_step < STEP_COUNT) {
             const struct drives_step step = {steps[d->at_step].object, steps[d->at_step].length,
                                              value_of(d)};
-            drives_ask(d, drives_io_bus_of(d, d->at_axis), wiring->node, &step);
+            takt_drives_ask(d, drives_io_bus_of(d, d->at_axis), wiring->node, &step);
             return true;
         }
         d->at_axis++;
@@ -215,7 +215,7 @@ static void take_refusal(struct drives *d, unsigned i)
     if (d->at_step != STEP_WATCH && d->at_step != STEP_BY_SYNC && d->at_step != STEP_LIFE &&
         !(d->at_step == STEP_HEARTBEAT && d->io[i].is_mute))
         raise_object(d, i, TAKT_ERROR_IO_REFUSES, d->sdo.abort_code,
-                     sdo_abort_text(d->sdo.abort_code));
+                     takt_sdo_abort_text(d->sdo.abort_code));
 }
 
 static void require(struct drives *d, unsigned i, bool is_so, uint32_t value)
@@ -277,11 +277,11 @@ static bool take_answer(struct drives *d)
         return false;
     case SDO_UNANSWERED:
         if (d->repeats++ >= DRIVES_SDO_REPEATS)
-            raise_object(d, i, TAKT_ERROR_IO_UNANSWERED, drives_cycles_ms(d, d->sdo_timeout_cycles),
-                         NULL);
+            raise_object(d, i, TAKT_ERROR_IO_UNANSWERED,
+                         takt_drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
         return true;
     case SDO_DONE:
-        take_value(d, i, sdo_client_number(&d->sdo));
+        take_value(d, i, takt_sdo_client_number(&d->sdo));
         break;
     case SDO_ABORTED:
         take_refusal(d, i);
@@ -306,33 +306,34 @@ static void raise_silent(struct drives *d)
 {
     for (unsigned i = 0; i < d->io_count; i++)
         if (!d->io[i].heard && d->io[i].input_bytes > 0)
-            raise(d, i, TAKT_ERROR_IO_SILENT, drives_cycles_ms(d, d->start_timeout_cycles), NULL);
+            raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, d->start_timeout_cycles),
+                  NULL);
 }
 
-void drives_io_start(struct drives *d)
+void takt_drives_io_start(struct drives *d)
 {
     if (d->at_axis < d->io_count) {
         if (take_answer(d) && d->state == DRIVES_STARTING && !ask_next(d))
             d->phase_cycles = 0;
     } else if (all_work(d)) {
         d->io_cycles = UINT32_MAX - 1; /* they are due */
-        drives_enter_phase(d, DRIVES_START);
+        takt_drives_enter_phase(d, DRIVES_START);
     } else if (d->phase_cycles > d->start_timeout_cycles) {
         raise_silent(d);
     }
 }
 
 /* One node a cycle, once all have been asked; what one has sent before is history. */
-void drives_io_send_start(struct drives *d, const struct can_port *port)
+void takt_drives_io_send_start(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->io_count && d->at_axis == d->io_count; i++) {
         struct drives_io *io = &d->io[i];
         if (io->started)
             continue;
         io->started = send_nmt(d, port, i, NMT_START);
-        drives_begin_guard(d, &io->guard);
+        takt_drives_begin_guard(d, &io->guard);
         io->heard = false;
-        io->reported = io->beaten = d->cycle;
+        io->reported = io->heartbeat = d->cycle;
         return;
     }
 }
@@ -364,7 +365,7 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
     if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&io->guard, frame))
-        io->beaten = d->cycle;
+        io->heartbeat = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING && d->phase < DRIVES_IO)
         io->booted = !io->reset_pending;
     else if (state == NMT_BOOTED || (state != NMT_OPERATIONAL && are_watched(d)))
@@ -374,11 +375,11 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
 static void take_emergency(struct drives *d, unsigned i, const struct can_frame *frame)
 {
     struct emcy emcy;
-    if (emcy_read(frame, &emcy) && emcy.code != EMCY_NONE && are_watched(d))
-        raise(d, i, TAKT_ERROR_IO_FAULT, emcy.code, emcy_text(emcy.code));
+    if (takt_emcy_read(frame, &emcy) && emcy.code != EMCY_NONE && are_watched(d))
+        raise(d, i, TAKT_ERROR_IO_FAULT, emcy.code, takt_emcy_text(emcy.code));
 }
 
-void drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame)
+void takt_drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame)
 {
     if (index == AXIS_COUNT)
         return;
@@ -404,11 +405,11 @@ void drives_io_take(struct drives *d, unsigned index, const struct can_frame *fr
 static void check_silence(struct drives *d, unsigned i)
 {
     const struct drives_io *io = &d->io[i];
-    const uint32_t silent = d->cycle - io->reported, heartless = d->cycle - io->beaten;
+    const uint32_t silent = d->cycle - io->reported, heartbeat_age = d->cycle - io->heartbeat;
     if (io->by_sync && silent > d->answer_timeout_cycles)
-        raise(d, i, TAKT_ERROR_IO_SILENT, drives_cycles_ms(d, silent), NULL);
-    if (heartless > d->heartless_most_cycles)
-        raise(d, i, TAKT_ERROR_IO_HEARTBEAT, drives_cycles_ms(d, heartless), NULL);
+        raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, silent), NULL);
+    if (heartbeat_age > d->heartbeat_age_max_cycles)
+        raise(d, i, TAKT_ERROR_IO_HEARTBEAT, takt_drives_cycles_ms(d, heartbeat_age), NULL);
 }
 
 /* Limit inputs stop when they become low, so that an axis can be driven off; and not while drives look for home there. */
@@ -425,16 +426,16 @@ static void check_inputs(struct drives *d, unsigned i)
 }
 
 /* Silence counts from when that of drives does: nothing has torque before. */
-void drives_io_check(struct drives *d)
+void takt_drives_io_check(struct drives *d)
 {
     for (unsigned i = 0; i < d->io_count && are_watched(d); i++) {
-        if (d->state != DRIVES_STARTING || drives_are_watched(d))
+        if (d->state != DRIVES_STARTING || takt_drives_are_watched(d))
             check_silence(d, i);
         check_inputs(d, i);
     }
 }
 
-void drives_add_inputs(const struct drives *d, struct inputs *inputs)
+void takt_drives_add_inputs(const struct drives *d, struct inputs *inputs)
 {
     for (unsigned i = 0; i < d->io_count; i++) {
         for (unsigned k = 0; k < IO_BITS_MAX; k++) {
@@ -449,7 +450,7 @@ void drives_add_inputs(const struct drives *d, struct inputs *inputs)
     }
 }
 
-bool drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high)
+bool takt_drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high)
 {
     for (unsigned i = 0; i < d->io_count; i++) {
         const uint16_t bits = find_inputs(&d->wiring[i], IO_KINDS, kind);
@@ -509,7 +510,8 @@ static void send_levels(struct drives *d, unsigned i, const struct can_port *por
 static int16_t analogue_of(const struct outputs *outputs, unsigned wired)
 {
     const double percent = wired > 0 ? outputs->analogue[wired - 1] : 0;
-    return (int16_t)maths_round(maths_clamp(percent, -PERCENT, PERCENT) * (INT16_MAX / PERCENT));
+    return (int16_t)takt_maths_round(maths_clamp(percent, -PERCENT, PERCENT) *
+                                     (INT16_MAX / PERCENT));
 }
 
 /* In every cycle: a controlled laser follows the path as closely as that. */
@@ -527,8 +529,8 @@ static void send_analogues(const struct drives *d, unsigned i, const struct can_
 }
 
 /* When they change, and all again as often as drives tell their errors: a frame may get lost. */
-void drives_send_outputs(struct drives *d, const struct can_port *port,
-                         const struct outputs *outputs)
+void takt_drives_send_outputs(struct drives *d, const struct can_port *port,
+                              const struct outputs *outputs)
 {
     const bool is_due = ++d->io_cycles >= DRIVES_EVENT_MS * 1000U / d->cycle_us;
     for (unsigned i = 0; i < d->io_count; i++) {
@@ -542,14 +544,14 @@ void drives_send_outputs(struct drives *d, const struct can_port *port,
         d->io_cycles = 0;
 }
 
-/* Of a bus: inputs and analogue outputs of every node, and the longest outputs, since they do not change in every cycle. */
+/* Load of a bus: inputs and analogue outputs of every node, and the longest outputs: they do not change every cycle. */
 struct io_load {
     uint32_t cyclic_bits, output_bits;
 };
 
 static uint32_t bits_of(const struct drives_rates *rates, unsigned bytes)
 {
-    return bytes > 0 ? drives_frame_bits(rates, bytes) : 0;
+    return bytes > 0 ? takt_drives_frame_bits(rates, bytes) : 0;
 }
 
 static void add_load(struct io_load *load, const struct drives_rates *rates, unsigned input_bytes,
@@ -560,7 +562,7 @@ static void add_load(struct io_load *load, const struct drives_rates *rates, uns
     load->output_bits = output_bits > load->output_bits ? output_bits : load->output_bits;
 }
 
-uint32_t drives_io_bits(const struct drives *d, unsigned bus)
+uint32_t takt_drives_io_bits(const struct drives *d, unsigned bus)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < d->io_count; i++)
@@ -570,8 +572,8 @@ uint32_t drives_io_bits(const struct drives *d, unsigned bus)
     return load.cyclic_bits + load.output_bits;
 }
 
-uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count, unsigned bus,
-                              const struct drives_rates *rates)
+uint32_t takt_drives_io_wired_bits(const struct io_wiring *wiring, unsigned count, unsigned bus,
+                                   const struct drives_rates *rates)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < count; i++)

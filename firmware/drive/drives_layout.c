@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-uint32_t drives_target_of(const struct drives_axis *axis)
+uint32_t takt_drives_target_of(const struct drives_axis *axis)
 {
     if (drives_is_by_velocity(axis))
         return CIA402_TARGET_VELOCITY;
@@ -14,13 +14,13 @@ uint32_t drives_target_of(const struct drives_axis *axis)
 }
 
 /* Byte at which an object begins. */
-uint8_t drives_byte_of(const struct pdo *pdo, uint32_t object)
+uint8_t takt_drives_byte_of(const struct pdo *pdo, uint32_t object)
 {
-    int offset = pdo_offset(&pdo->mapping, object);
+    int offset = takt_pdo_offset(&pdo->mapping, object);
     return offset < 0 ? DRIVES_NOWHERE : (uint8_t)offset;
 }
 
-void drives_forget_pdos(struct drives_axis *axis)
+void takt_drives_forget_pdos(struct drives_axis *axis)
 {
     axis->control_frame.length = axis->target_frame.length = 0;
     axis->control_frame.mode = axis->target_frame.mode = DRIVES_NOWHERE;
@@ -28,7 +28,7 @@ void drives_forget_pdos(struct drives_axis *axis)
     axis->bits = 0;
 }
 
-bool drives_uses(const struct drives_axis *axis, const struct pdo *pdo)
+bool takt_drives_uses(const struct drives_axis *axis, const struct pdo *pdo)
 {
     return (axis->control_frame.length > 0 && axis->control_frame.cob_id == pdo->cob_id) ||
            (axis->target_frame.length > 0 && axis->target_frame.cob_id == pdo->cob_id) ||
@@ -41,20 +41,20 @@ static bool has_more(const struct drives_axis *axis, const struct pdo *pdo)
 {
     const struct pdo_mapping *mapping = &pdo->mapping;
     unsigned i = 0;
-    while (i < mapping->count &&
-           (mapping->object[i] == PDO_DUMMY_32 || mapping->object[i] == drives_target_of(axis)))
+    while (i < mapping->count && (mapping->object[i] == PDO_DUMMY_32 ||
+                                  mapping->object[i] == takt_drives_target_of(axis)))
         i++;
     return i < mapping->count;
 }
 
-void drives_set_target_pdo(const struct drives *d, struct pdo *pdo)
+void takt_drives_set_target_pdo(const struct drives *d, struct pdo *pdo)
 {
     const unsigned bus = drives_bus_of(d, d->at_axis);
     uint8_t node[AXIS_COUNT];
     for (unsigned i = 0; i < d->count; i++)
         if (drives_bus_of(d, i) == bus)
             node[d->axis[i].place] = d->node[i];
-    target_pdo_set(pdo, node, d->on_bus[bus], d->axis[d->at_axis].place, d->group);
+    takt_target_pdo_set(pdo, node, d->on_bus[bus], d->axis[d->at_axis].place, d->group);
 }
 
 static void take_received(struct drives *d)
@@ -63,10 +63,11 @@ static void take_received(struct drives *d)
     const struct pdo *pdo = &d->mapping.pdo;
     const struct drives_frame frame = {.cob_id = pdo->cob_id,
                                        .length = pdo->mapping.length,
-                                       .control = drives_byte_of(pdo, CIA402_CONTROLWORD),
-                                       .mode = drives_byte_of(pdo, CIA402_MODE),
+                                       .control = takt_drives_byte_of(pdo, CIA402_CONTROLWORD),
+                                       .mode = takt_drives_byte_of(pdo, CIA402_MODE),
                                        .is_mixed = has_more(axis, pdo),
-                                       .target = drives_byte_of(pdo, drives_target_of(axis))};
+                                       .target =
+                                           takt_drives_byte_of(pdo, takt_drives_target_of(axis))};
     bool is_better = axis->control_frame.length == 0 ||
                      (axis->control_frame.mode == DRIVES_NOWHERE && frame.mode != DRIVES_NOWHERE);
     if (frame.control != DRIVES_NOWHERE && is_better)
@@ -75,21 +76,21 @@ static void take_received(struct drives *d)
         return;
     axis->target_frame = frame;
     if (pdo->transmission > PDO_SYNC_MAX)
-        drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_TARGET);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_TARGET);
 }
 
-void drives_count_bits(struct drives *d, unsigned length)
+void takt_drives_count_bits(struct drives *d, unsigned length)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->bits = (uint16_t)(axis->bits + drives_bits(d, length));
 }
 
 /* An unwanted TPDO stays. */
-void drives_suffer(struct drives *d)
+void takt_drives_suffer(struct drives *d)
 {
-    drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
+    takt_drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
     if (d->mapping.pdo.transmission <= PDO_SYNC_MAX || d->mapping.is_timed)
-        drives_count_bits(d, d->mapping.pdo.mapping.length);
+        takt_drives_count_bits(d, d->mapping.pdo.mapping.length);
 }
 
 static void take_transmitted(struct drives *d)
@@ -97,8 +98,8 @@ static void take_transmitted(struct drives *d)
     struct drives_axis *axis = &d->axis[d->at_axis];
     const struct drives_mapping *m = &d->mapping;
     const struct pdo *pdo = &m->pdo;
-    uint8_t status = drives_byte_of(pdo, CIA402_STATUSWORD),
-            position = drives_byte_of(pdo, CIA402_POSITION_ACTUAL);
+    uint8_t status = takt_drives_byte_of(pdo, CIA402_STATUSWORD),
+            position = takt_drives_byte_of(pdo, CIA402_POSITION_ACTUAL);
     bool has_both = status != DRIVES_NOWHERE && position != DRIVES_NOWHERE;
     bool is_timed = m->pass >= PASS_APART && pdo->transmission >= PDO_EVENT_MIN && m->is_timed;
     bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC || is_timed;
@@ -113,16 +114,16 @@ static void take_transmitted(struct drives *d)
         axis->position_id = pdo->cob_id;
         axis->position_end = (uint8_t)(position + 4);
     }
-    if (!is_cyclic && drives_byte_of(pdo, CIA402_ERROR_CODE) == 0)
+    if (!is_cyclic && takt_drives_byte_of(pdo, CIA402_ERROR_CODE) == 0)
         axis->error_id = pdo->cob_id;
-    if (!is_cyclic || !drives_uses(axis, pdo))
+    if (!is_cyclic || !takt_drives_uses(axis, pdo))
         return;
-    drives_count_bits(d, pdo->mapping.length);
+    takt_drives_count_bits(d, pdo->mapping.length);
     if (is_timed)
-        drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_REPORT);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_REPORT);
 }
 
-/* Of entries: a drive may have mapped more than a frame holds only by mistake. */
+/* Bytes of all entries. 0: more than a frame holds, which a drive may have mapped only by mistake. */
 static uint8_t length_of(const struct pdo_mapping *mapping, unsigned most)
 {
     unsigned bits = 0;
@@ -131,7 +132,7 @@ static uint8_t length_of(const struct pdo_mapping *mapping, unsigned most)
     return (uint8_t)(bits <= 8 * most ? bits / 8 : 0);
 }
 
-void drives_take_layout(struct drives *d)
+void takt_drives_take_layout(struct drives *d)
 {
     struct drives_mapping *m = &d->mapping;
     m->pdo.mapping.length = length_of(&m->pdo.mapping, d->frame_max);
@@ -144,10 +145,10 @@ void drives_take_layout(struct drives *d)
     m->entry = 0;
 }
 
-void drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
-                       uint32_t value)
+void takt_drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
+                            uint32_t value)
 {
-    unsigned at = drives_byte_of(pdo, object), bytes = (object & 0xFF) / 8;
+    unsigned at = takt_drives_byte_of(pdo, object), bytes = (object & 0xFF) / 8;
     for (unsigned i = 0; i < bytes && i < 4 && frame->length > 0 && frame->cob_id == pdo->cob_id;
          i++)
         frame->data[at + i] = (uint8_t)(value >> 8 * i);

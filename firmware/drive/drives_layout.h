@@ -21,22 +21,22 @@ static inline bool drives_is_transmitted(const struct drives_mapping *m)
 }
 
 /* Byte at which an object begins; DRIVES_NOWHERE: it is not in it. */
-uint8_t drives_byte_of(const struct pdo *pdo, uint32_t object);
+uint8_t takt_drives_byte_of(const struct pdo *pdo, uint32_t object);
 /* The object that is the target, by the mode in which the drive follows. */
-uint32_t drives_target_of(const struct drives_axis *axis);
+uint32_t takt_drives_target_of(const struct drives_axis *axis);
 /* Something of this PDO is used. */
-bool drives_uses(const struct drives_axis *axis, const struct pdo *pdo);
+bool takt_drives_uses(const struct drives_axis *axis, const struct pdo *pdo);
 
 /* The PDO being configured is known: what is in it has its place. */
-void drives_take_layout(struct drives *d);
+void takt_drives_take_layout(struct drives *d);
 /* It has nothing that is wanted, and stays. */
-void drives_suffer(struct drives *d);
+void takt_drives_suffer(struct drives *d);
 /* The drive's value of what else is in a frame. */
-void drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
-                       uint32_t value);
+void takt_drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
+                            uint32_t value);
 /* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
-bool drives_finish_map(struct drives *d);
+bool takt_drives_finish_map(struct drives *d);
 /* A frame of this length is sent in every cycle, of the drive that is being configured. */
-void drives_count_bits(struct drives *d, unsigned length);
+void takt_drives_count_bits(struct drives *d, unsigned length);
 
 #endif

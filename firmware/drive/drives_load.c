@@ -7,20 +7,20 @@
 
 #define HEARTBEAT_LENGTH 1
 
-unsigned drives_group_of(const struct drives_rates *rates)
+unsigned takt_drives_group_of(const struct drives_rates *rates)
 {
     return rates->data > 0 ? TARGET_PDO_FD : TARGET_PDO_PAIR;
 }
 
-unsigned drives_cycle_frames(unsigned count, unsigned group, bool has_errors,
-                             uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
+unsigned takt_drives_cycle_frames(unsigned count, unsigned group, bool has_errors,
+                                  uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
 {
     unsigned frames = 0;
     if (count > AXIS_COUNT)
         count = AXIS_COUNT;
     length[frames++] = 0;
     for (unsigned i = 0; i < count; i += group)
-        length[frames++] = (uint8_t)(4 * target_pdo_members(count, i, group));
+        length[frames++] = (uint8_t)(4 * takt_target_pdo_members(count, i, group));
     for (unsigned i = 0; i < count; i++)
         length[frames++] = DRIVES_STATUS_LENGTH;
     if (has_errors)
@@ -45,7 +45,7 @@ static uint32_t classical_bits(uint32_t n)
  *     D = 33 + 10 n,  n <= 16;  38 + 10 n above
  * The derivation is in host/bus/frame_bits.c.
  */
-uint32_t drives_frame_bits(const struct drives_rates *rates, uint32_t n)
+uint32_t takt_drives_frame_bits(const struct drives_rates *rates, uint32_t n)
 {
     if (rates->data == 0)
         return classical_bits(n);
@@ -53,7 +53,7 @@ uint32_t drives_frame_bits(const struct drives_rates *rates, uint32_t n)
     return 32 + (uint32_t)(((uint64_t)data_bits * rates->nominal + rates->data - 1) / rates->data);
 }
 
-uint32_t drives_remote_bits(void)
+uint32_t takt_drives_remote_bits(void)
 {
     return classical_bits(0);
 }
@@ -67,27 +67,27 @@ static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle
     return load->percent <= 100.0;
 }
 
-bool drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
-                               struct drives_load *load)
+bool takt_drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
+                                    struct drives_load *load)
 {
     const struct drives_rates *rates = &traffic->rates;
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
-    unsigned frames =
-        drives_cycle_frames(traffic->count, drives_group_of(rates), !traffic->no_error_pdo, length);
-    load->bits = drives_io_wired_bits(traffic->wiring, traffic->io_count, traffic->bus, rates);
+    unsigned frames = takt_drives_cycle_frames(traffic->count, takt_drives_group_of(rates),
+                                               !traffic->no_error_pdo, length);
+    load->bits = takt_drives_io_wired_bits(traffic->wiring, traffic->io_count, traffic->bus, rates);
     for (unsigned i = 0; i < frames; i++)
-        load->bits += drives_frame_bits(rates, length[i]);
+        load->bits += takt_drives_frame_bits(rates, length[i]);
     return set_share(load, rates->nominal, cycle_us);
 }
 
-bool drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
-                         struct drives_load *load)
+bool takt_drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
+                              struct drives_load *load)
 {
     const struct drives_traffic traffic = {.count = count, .rates = *rates};
-    return drives_predict_whole_load(&traffic, cycle_us, load);
+    return takt_drives_predict_whole_load(&traffic, cycle_us, load);
 }
 
-/* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
+/* Length at most of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
 static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
 {
     const struct drives_axis *axis = &d->axis[i];
@@ -95,12 +95,12 @@ static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
     return (uint8_t)(is_kept ? d->frame_max : end);
 }
 
-void drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load)
+void takt_drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load)
 {
     unsigned error_length = 0;
     bool has_error = false;
-    load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) + drives_io_bits(d, bus) +
-                 drives_guard_bits(d, bus);
+    load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) +
+                 takt_drives_io_bits(d, bus) + takt_drives_guard_bits(d, bus);
     for (unsigned i = 0; i < d->count; i++) {
         if (drives_bus_of(d, i) != bus)
             continue;
@@ -151,8 +151,8 @@ static unsigned add_io(const struct drives *d, unsigned i, struct drives_pdo pdo
     return add_pdo(pdo, count, PDO_RPDO2_FUNCTION + node, 2U * io->analogues, DRIVES_PDO_OUTPUTS);
 }
 
-unsigned drives_get_pdos(const struct drives *d, unsigned bus,
-                         struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
+unsigned takt_drives_get_pdos(const struct drives *d, unsigned bus,
+                              struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
 {
     unsigned count = 0;
     for (unsigned i = 0; i < d->count; i++)
@@ -164,7 +164,7 @@ unsigned drives_get_pdos(const struct drives *d, unsigned bus,
     return count;
 }
 
-unsigned drives_get_report(const struct drives *d, unsigned bus, uint16_t id)
+unsigned takt_drives_get_report(const struct drives *d, unsigned bus, uint16_t id)
 {
     unsigned report = 0;
     for (unsigned i = 0; i < d->count; i++) {
@@ -179,16 +179,18 @@ unsigned drives_get_report(const struct drives *d, unsigned bus, uint16_t id)
 }
 
 /* "1310 of 1000 bits", "1310 of 1000 bits of can1". */
-void drives_set_overload(const struct drives_load *load, unsigned bus, struct diagnostic *fault)
+void takt_drives_set_overload(const struct drives_load *load, unsigned bus,
+                              struct diagnostic *fault)
 {
     struct word word = {.length = 0};
-    word_add_number(&word, load->bits);
-    word_add_text(&word, " of ");
-    word_add_number(&word, load->capacity_bits);
-    word_add_text(&word, " bits");
+    takt_word_add_number(&word, load->bits);
+    takt_word_add_text(&word, " of ");
+    takt_word_add_number(&word, load->capacity_bits);
+    takt_word_add_text(&word, " bits");
     if (bus > 0) {
-        word_add_text(&word, " of can");
-        word_add_number(&word, bus);
+        takt_word_add_text(&word, " of can");
+        takt_word_add_number(&word, bus);
     }
-    diagnostic_set(fault, TAKT_ERROR_BUS_OVERLOAD, 0, 0, word.text, word.length, load->percent);
+    takt_diagnostic_set(fault, TAKT_ERROR_BUS_OVERLOAD, 0, 0, word.text, word.length,
+                        load->percent);
 }

@@ -77,11 +77,11 @@ static void want_target(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
-        add(pdo, drives_target_of(axis), true);
+        add(pdo, takt_drives_target_of(axis), true);
         return;
     }
-    drives_set_target_pdo(d, pdo);
-    pdo->mapping.object[axis->place % d->group] = drives_target_of(axis);
+    takt_drives_set_target_pdo(d, pdo);
+    pdo->mapping.object[axis->place % d->group] = takt_drives_target_of(axis);
 }
 
 static void want_received(const struct drives *d, struct pdo *pdo)
@@ -168,7 +168,7 @@ static bool set_read(struct drives_step *step, unsigned index, unsigned sub)
 
 static bool has(const struct pdo *pdo, uint32_t object)
 {
-    return drives_byte_of(pdo, object) != DRIVES_NOWHERE;
+    return takt_drives_byte_of(pdo, object) != DRIVES_NOWHERE;
 }
 
 static bool is_report(const struct pdo *pdo)
@@ -228,7 +228,7 @@ static uint8_t type_for(const struct drives *d)
     const struct pdo *pdo = &d->mapping.pdo;
     bool has_cyclic = drives_is_transmitted(&d->mapping)
                           ? is_report(pdo)
-                          : has(pdo, drives_target_of(&d->axis[d->at_axis]));
+                          : has(pdo, takt_drives_target_of(&d->axis[d->at_axis]));
     return has_cyclic ? PDO_EVERY_SYNC : PDO_EVENT;
 }
 
@@ -236,14 +236,14 @@ static uint8_t type_for(const struct drives *d)
 static bool is_rest(const struct drives_axis *axis, uint32_t object)
 {
     return object >> 16 >= OBJECT_DEVICE_TYPE && object != CIA402_CONTROLWORD &&
-           object != CIA402_MODE && object != drives_target_of(axis);
+           object != CIA402_MODE && object != takt_drives_target_of(axis);
 }
 
 static bool is_unwanted(const struct drives *d)
 {
     const struct drives_mapping *m = &d->mapping;
     return drives_is_transmitted(m) && m->pdo.mapping.count > 0 &&
-           !drives_uses(&d->axis[d->at_axis], &m->pdo);
+           !takt_drives_uses(&d->axis[d->at_axis], &m->pdo);
 }
 
 static bool find_reading(const struct drives *d, struct drives_step *step)
@@ -270,7 +270,7 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
         return m->pass >= PASS_APART && is_event_driven(m) && is_report(&m->pdo) && !m->is_timed &&
                set_read(step, parameters, OBJECT_PDO_EVENT_TIMER);
     case READ_REST:
-        return is_entry && !drives_is_transmitted(m) && drives_uses(axis, &m->pdo) &&
+        return is_entry && !drives_is_transmitted(m) && takt_drives_uses(axis, &m->pdo) &&
                is_rest(axis, object) && set_read(step, object >> 16, object >> 8 & 0xFF);
     default:
         return is_unwanted(d) && !axis->config.keeps_settings &&
@@ -286,7 +286,7 @@ static void take_told(struct drives *d)
     struct drives_mapping *m = &d->mapping;
     m->step = m->is_taken ? SILENCE : READ_ID;
     if (m->is_taken)
-        drives_take_layout(d);
+        takt_drives_take_layout(d);
 }
 
 /* ---- Answers ---- */
@@ -334,7 +334,7 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
         break;
     case CLEAR:
         if (mapping->count > 0)
-            drives_give_up(d, d->at_axis, DRIVES_NO_MAPPING);
+            takt_drives_give_up(d, d->at_axis, DRIVES_NO_MAPPING);
         m->step = COUNT;
         break;
     case ENTRY:
@@ -348,7 +348,7 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
     case TIMER:
         if (is_report(&m->pdo))
             break;
-        drives_give_up(d, d->at_axis, DRIVES_NO_EVENT_TIMER);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_EVENT_TIMER);
         return true;
     default:
         break;
@@ -378,8 +378,8 @@ static void take_rest(struct drives *d, const struct drives_answer *answer)
     uint32_t object = m->pdo.mapping.object[m->entry++];
     if (answer->abort_code != SDO_ABORT_NONE)
         return;
-    drives_store_rest(&axis->control_frame, &m->pdo, object, answer->value);
-    drives_store_rest(&axis->target_frame, &m->pdo, object, answer->value);
+    takt_drives_store_rest(&axis->control_frame, &m->pdo, object, answer->value);
+    takt_drives_store_rest(&axis->target_frame, &m->pdo, object, answer->value);
 }
 
 /* A PDO that is not valid, or not of this kind of identifiers, is none. */
@@ -425,12 +425,12 @@ static void take_reading(struct drives *d, const struct drives_answer *answer)
         break;
     default:
         if (!is_good)
-            drives_suffer(d);
+            takt_drives_suffer(d);
         break;
     }
 }
 
-void drives_take_map(struct drives *d, const struct drives_answer *answer)
+void takt_drives_take_map(struct drives *d, const struct drives_answer *answer)
 {
     if (d->mapping.step < TOLD)
         take_telling(d, answer);
@@ -450,7 +450,7 @@ static void pass_step(struct drives *d)
         take_told(d);
         break;
     case FOUND:
-        drives_take_layout(d);
+        takt_drives_take_layout(d);
         m->step++;
         break;
     case READ_REST:
@@ -459,7 +459,7 @@ static void pass_step(struct drives *d)
         break;
     case SILENCE:
         if (is_unwanted(d))
-            drives_suffer(d);
+            takt_drives_suffer(d);
         m->step++;
         break;
     case DONE:
@@ -485,7 +485,7 @@ static bool find_request(const struct drives *d, struct drives_step *step)
     }
 }
 
-bool drives_next_map(struct drives *d, struct drives_step *step)
+bool takt_drives_next_map(struct drives *d, struct drives_step *step)
 {
     do {
         while (d->mapping.pass < PASSES && d->at_part == DRIVES_MAP) {
@@ -493,6 +493,6 @@ bool drives_next_map(struct drives *d, struct drives_step *step)
                 return true;
             pass_step(d);
         }
-    } while (d->at_part == DRIVES_MAP && drives_finish_map(d));
+    } while (d->at_part == DRIVES_MAP && takt_drives_finish_map(d));
     return false;
 }

@@ -14,16 +14,16 @@ static void part_group(struct drives *d)
         if (!drives_are_grouped(d, i, at))
             continue;
         d->axis[i].is_paired = false;
-        drives_give_up(d, i, DRIVES_NO_PAIR);
+        takt_drives_give_up(d, i, DRIVES_NO_PAIR);
         first = i;
     }
-    drives_begin_axis(d, first);
+    takt_drives_begin_axis(d, first);
 }
 
 static bool raise_unmapped(struct drives *d, uint32_t object)
 {
-    drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNMAPPED, d->read[0],
-                        sdo_abort_text(d->read[0]));
+    takt_drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNMAPPED, d->read[0],
+                             takt_sdo_abort_text(d->read[0]));
     return false;
 }
 
@@ -31,11 +31,11 @@ static bool raise_unmapped(struct drives *d, uint32_t object)
 static bool try_next_mode(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
-    const uint8_t next = drives_mode_after(axis, axis->follow_mode);
+    const uint8_t next = takt_drives_mode_after(axis, axis->follow_mode);
     if (next == CIA402_MODE_NONE)
         return false;
     axis->follow_mode = next;
-    drives_forget_pdos(axis);
+    takt_drives_forget_pdos(axis);
     d->mapping.pass = d->mapping.step = 0;
     d->at_part = DRIVES_SET;
     d->at_step = 0;
@@ -48,8 +48,8 @@ static void check_watch(struct drives *d)
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (d->heartbeat_ms > 0 && !drives_has_given_up(axis, DRIVES_NO_WATCH))
         return;
-    drives_raise_object(d, d->at_axis, SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1),
-                        TAKT_ERROR_DRIVE_UNWATCHED, 0, NULL);
+    takt_drives_raise_object(d, d->at_axis, SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1),
+                             TAKT_ERROR_DRIVE_UNWATCHED, 0, NULL);
 }
 
 /* A mode that costs something. */
@@ -57,10 +57,10 @@ static void take_mode(struct drives *d)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (axis->follow_mode == CIA402_MODE_INTERPOLATED_POSITION)
-        drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
     if (!drives_is_by_velocity(axis))
         return;
-    drives_give_up(d, d->at_axis, DRIVES_NO_POSITION);
+    takt_drives_give_up(d, d->at_axis, DRIVES_NO_POSITION);
     d->steers = true;
     check_watch(d);
 }
@@ -70,9 +70,9 @@ static bool shares_frame(const struct drives *d)
 {
     const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
     struct pdo pdo;
-    drives_set_target_pdo(d, &pdo);
+    takt_drives_set_target_pdo(d, &pdo);
     return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
-           frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
+           frame->target == takt_drives_byte_of(&pdo, CIA402_TARGET_POSITION);
 }
 
 /* The plain form, see drives_receive.c; without a heartbeat more is to be done. */
@@ -84,7 +84,7 @@ static void set_report(struct drives_axis *axis)
         axis->report_id = axis->status_id;
 }
 
-bool drives_finish_map(struct drives *d)
+bool takt_drives_finish_map(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->mode = axis->follow_mode;
@@ -93,25 +93,25 @@ bool drives_finish_map(struct drives *d)
         return false;
     }
     if (axis->target_frame.length == 0)
-        return try_next_mode(d) || raise_unmapped(d, drives_target_of(axis));
+        return try_next_mode(d) || raise_unmapped(d, takt_drives_target_of(axis));
     if (axis->status_id == NO_TPDO)
         return raise_unmapped(d, CIA402_STATUSWORD);
     if (axis->position_id == NO_TPDO)
         return raise_unmapped(d, CIA402_POSITION_ACTUAL);
     if (axis->status_id != axis->position_id)
-        drives_give_up(d, d->at_axis, DRIVES_NO_ONE_REPORT);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_ONE_REPORT);
     take_mode(d);
     if (axis->control_frame.length == 0)
-        drives_give_up(d, d->at_axis, DRIVES_NO_CONTROL_PDO);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_CONTROL_PDO);
     if (axis->control_frame.mode == DRIVES_NOWHERE && axis->target_frame.mode == DRIVES_NOWHERE)
-        drives_give_up(d, d->at_axis, DRIVES_NO_MODE_PDO);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_MODE_PDO);
     if (axis->error_id == NO_TPDO)
-        drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
     axis->sends = axis->target_frame.is_mixed ? DRIVES_SENDS_MIXED : DRIVES_SENDS;
     if (axis->is_paired && !drives_ends_group(d, d->at_axis))
         axis->sends = DRIVES_WAITS;
     else
-        drives_count_bits(d, axis->target_frame.length);
+        takt_drives_count_bits(d, axis->target_frame.length);
     set_report(axis);
     return false;
 }

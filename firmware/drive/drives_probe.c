@@ -2,8 +2,8 @@
  * Touch probes of the drives (CiA 402-2, 60B8 ... 60BD). A drive latches its own position when its probe input changes, so
  * what a probing move finds is as exact as the encoder, not as the cycle.
  *
- *     drives_arm_probe     each drive   60B8 = 0, which forgets what was before; 60B8 = the edge that is looked for
- *     drives_read_probe    each drive   60B9: has it come? then 60BA or 60BB: where
+ *     takt_drives_arm_probe     each drive   60B8 = 0, which forgets what was before; 60B8 = the edge that is looked for
+ *     takt_drives_read_probe    each drive   60B9: has it come? then 60BA or 60BB: where
  *
  * Both take some cycles of SDO, in which the axes are to rest. A drive that refuses has no touch probe and is not asked
  * again; one whose edge has not come is not wired to the probe.
@@ -26,7 +26,7 @@ static bool has_probe(const struct drives *d, unsigned index)
            !drives_has_given_up(&d->axis[index], DRIVES_NO_TOUCH_PROBE);
 }
 
-bool drives_have_probe(const struct drives *d)
+bool takt_drives_have_probe(const struct drives *d)
 {
     bool any = false;
     for (unsigned i = 0; i < d->count; i++)
@@ -34,7 +34,7 @@ bool drives_have_probe(const struct drives *d)
     return any;
 }
 
-bool drives_have_probed(const struct drives *d)
+bool takt_drives_have_probed(const struct drives *d)
 {
     return d->probing & PROBE_USED;
 }
@@ -46,19 +46,19 @@ static void begin(struct drives *d, unsigned what)
     d->sdo.result = SDO_IDLE;
 }
 
-void drives_arm_probe(struct drives *d, bool falls)
+void takt_drives_arm_probe(struct drives *d, bool falls)
 {
     for (unsigned i = 0; i < d->count; i++)
         d->axis[i].is_latched = false;
     begin(d, PROBE_USED | PROBE_ARMS | (falls ? PROBE_FALLS : 0u));
 }
 
-void drives_read_probe(struct drives *d)
+void takt_drives_read_probe(struct drives *d)
 {
     begin(d, PROBE_READS | (d->probing & (PROBE_USED | PROBE_FALLS)));
 }
 
-void drives_get_latched(const struct drives *d, struct point *at)
+void takt_drives_get_latched(const struct drives *d, struct point *at)
 {
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_config_axis *config = &d->axis[i].config;
@@ -101,18 +101,18 @@ static void take_latched(struct drives *d, uint32_t value)
 static void take(struct drives *d)
 {
     if (d->sdo.result == SDO_ABORTED && d->probing & PROBE_ARMS)
-        drives_give_up(d, d->at_axis, DRIVES_NO_TOUCH_PROBE);
+        takt_drives_give_up(d, d->at_axis, DRIVES_NO_TOUCH_PROBE);
     if (d->sdo.result != SDO_DONE)
         d->at_step = STEPS;
     else if (d->probing & PROBE_READS)
-        take_latched(d, sdo_client_number(&d->sdo));
+        take_latched(d, takt_sdo_client_number(&d->sdo));
     else
         d->at_step++;
 }
 
-void drives_probe_next(struct drives *d)
+void takt_drives_probe_next(struct drives *d)
 {
-    sdo_client_tick(&d->sdo);
+    takt_sdo_client_tick(&d->sdo);
     if (sdo_client_is_busy(&d->sdo))
         return;
     if (d->sdo.result != SDO_IDLE)
@@ -127,5 +127,5 @@ void drives_probe_next(struct drives *d)
         return;
     }
     const struct drives_step step = step_of(d);
-    drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis], &step);
+    takt_drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis], &step);
 }

@@ -28,7 +28,7 @@ static inline void take_status(struct drives *d, struct drives_axis *axis,
     set_position(d, axis, little_endian_read32(frame->data + 2));
 }
 
-/* Of any form, of one of them or of both; a frame that is too short for its position counts for nothing. */
+/* A report of any form: statusword, position or both; a frame too short for its position counts for nothing. */
 static void take_report(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
 {
     bool has_position = frame->id == axis->position_id;
@@ -38,7 +38,7 @@ static void take_report(struct drives *d, struct drives_axis *axis, const struct
         axis->statusword = little_endian_read16(frame->data + axis->status_end - 2);
         axis->heard = true;
         if (axis->beats_by_status)
-            axis->beaten = d->cycle;
+            axis->heartbeat = d->cycle;
     }
     if (has_position)
         set_position(d, axis, little_endian_read32(frame->data + axis->position_end - 4));
@@ -48,19 +48,19 @@ static void take_report(struct drives *d, struct drives_axis *axis, const struct
 static void take_emergency(struct drives *d, unsigned index, const struct can_frame *frame)
 {
     struct emcy emcy;
-    if (!emcy_read(frame, &emcy))
+    if (!takt_emcy_read(frame, &emcy))
         return;
     d->axis[index].emcy_code = emcy.code;
-    if (emcy.code != EMCY_NONE && drives_are_watched(d))
-        drives_raise_reported(d, index, emcy.code);
-    drives_complete_fault(d, index, emcy.code);
+    if (emcy.code != EMCY_NONE && takt_drives_are_watched(d))
+        takt_drives_raise_reported(d, index, emcy.code);
+    takt_drives_complete_fault(d, index, emcy.code);
 }
 
 /* Object 603F comes first. It is of use when the emergency has been lost. */
 static void take_error_code(struct drives *d, unsigned index, const struct can_frame *frame)
 {
     if (frame->length >= 2)
-        drives_complete_fault(d, index, little_endian_read16(frame->data));
+        takt_drives_complete_fault(d, index, little_endian_read16(frame->data));
 }
 
 static void take_heartbeat(struct drives *d, unsigned index, const struct can_frame *frame)
@@ -70,13 +70,13 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
     if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&axis->guard, frame))
-        axis->beaten = d->cycle;
+        axis->heartbeat = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING)
-        drives_start_again(d, index);
+        takt_drives_start_again(d, index);
     else if (state == NMT_BOOTED)
-        drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
-    else if (state != NMT_OPERATIONAL && drives_are_watched(d))
-        drives_raise(d, index, TAKT_ERROR_DRIVE_NMT, state, drives_nmt_text(state));
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
+    else if (state != NMT_OPERATIONAL && takt_drives_are_watched(d))
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_NMT, state, drives_nmt_text(state));
 }
 
 /* Whatever does not come in every cycle. */
@@ -105,7 +105,7 @@ static void take_frame(struct drives *d, unsigned bus, const struct can_frame *f
 {
     unsigned index = d->axis_of_node[bus][node_id(frame->id)];
     if (index >= AXIS_COUNT) {
-        drives_io_take(d, index, frame);
+        takt_drives_io_take(d, index, frame);
         return;
     }
     struct drives_axis *axis = &d->axis[index];
@@ -122,28 +122,28 @@ static void take_frames(struct drives *d, unsigned bus, const struct can_port *p
         take_frame(d, bus, &frame);
 }
 
-void drives_receive(struct drives *d, const struct can_port *port)
+void takt_drives_receive(struct drives *d, const struct can_port *port)
 {
     for (unsigned bus = 0; bus < drives_bus_count(d); bus++)
         take_frames(d, bus, &port[bus]);
     if (d->io_count > 0)
-        drives_io_check(d);
+        takt_drives_io_check(d);
     if (d->gantry_count > 0)
-        drives_place_gantries(d);
+        takt_drives_place_gantries(d);
     switch (d->state) {
     case DRIVES_STARTING:
-        drives_start(d);
+        takt_drives_start(d);
         break;
     case DRIVES_ENABLED:
         if (drives_probe_is_busy(d))
-            drives_probe_next(d);
-        drives_check_operation(d);
+            takt_drives_probe_next(d);
+        takt_drives_check_operation(d);
         break;
     case DRIVES_STOPPING:
-        drives_check_operation(d);
+        takt_drives_check_operation(d);
         break;
     case DRIVES_BRAKING:
-        drives_watch_brakes(d);
+        takt_drives_watch_brakes(d);
         break;
     case DRIVES_FAULTED:
         break;

@@ -11,19 +11,19 @@
 
 #define INCREMENTS_MAX 2147483647.0
 
-void drives_sync(struct drives *d, const struct can_port *port)
+void takt_drives_sync(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
-    sync_write(&frame);
+    takt_sync_write(&frame);
     for (unsigned bus = 0; bus < drives_bus_count(d); bus++)
         (void)drives_send_frame(&port[bus],
                                 &frame); /* a refused one shows as drives that do not answer */
 }
 
-bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node)
+bool takt_drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node)
 {
     struct can_frame frame;
-    nmt_write_command(&frame, command, node);
+    takt_nmt_write_command(&frame, command, node);
     return drives_send_frame(port, &frame);
 }
 
@@ -33,7 +33,7 @@ static void send_heartbeat(struct drives *d, const struct can_port *port)
     struct can_frame frame;
     if (d->heartbeat_cycles == 0)
         return;
-    nmt_write_heartbeat(&frame, d->controller_node, NMT_OPERATIONAL);
+    takt_nmt_write_heartbeat(&frame, d->controller_node, NMT_OPERATIONAL);
     for (unsigned bus = 0; bus < drives_bus_count(d); bus++)
         if (++d->beat_cycles[bus] >= d->heartbeat_cycles && drives_send_frame(&port[bus], &frame))
             d->beat_cycles[bus] = 0;
@@ -65,7 +65,7 @@ static void send_controlword(struct drives_axis *axis, const struct can_port *po
     if (axis->control_frame.length > 0)
         fill(&frame, &axis->control_frame, axis, controlword);
     else if (is_urgent)
-        sdo_write_word(&frame, axis->config.node, CIA402_CONTROLWORD, controlword);
+        takt_sdo_write_word(&frame, axis->config.node, CIA402_CONTROLWORD, controlword);
     else
         return;
     if (drives_send_frame(&port[drives_axis_bus(axis)], &frame))
@@ -92,14 +92,14 @@ static void send_targets(struct drives *d, const struct can_port *port)
         frame->id = as->cob_id;
         frame->length = as->length;
         if (!drives_send_frame(&port[bus], frame) && d->state != DRIVES_STARTING)
-            drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
+            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
     }
 }
 
 static bool send_nmt(const struct drives *d, const struct can_port *port, unsigned index,
                      enum nmt_command command)
 {
-    return drives_send_nmt(&port[drives_bus_of(d, index)], command, d->node[index]);
+    return takt_drives_send_nmt(&port[drives_bus_of(d, index)], command, d->node[index]);
 }
 
 static void send_resets(struct drives *d, const struct can_port *port)
@@ -120,8 +120,8 @@ static void send_holds(struct drives *d, const struct can_port *port)
 static void send_request(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
-    if (sdo_client_next(&d->sdo, &frame) && drives_send_frame(&port[d->sdo_bus], &frame))
-        sdo_client_sent(&d->sdo);
+    if (takt_sdo_client_next(&d->sdo, &frame) && drives_send_frame(&port[d->sdo_bus], &frame))
+        takt_sdo_client_sent(&d->sdo);
 }
 
 /* The one with the highest node id that has not been started; NULL: none. */
@@ -146,11 +146,12 @@ static void send_start(struct drives *d, const struct can_port *port)
     struct drives_axis *axis = next_to_start(d);
     if (axis == NULL)
         return;
-    axis->started = drives_send_nmt(&port[drives_axis_bus(axis)], NMT_START, axis->config.node);
-    drives_begin_guard(d, &axis->guard);
+    axis->started =
+        takt_drives_send_nmt(&port[drives_axis_bus(axis)], NMT_START, axis->config.node);
+    takt_drives_begin_guard(d, &axis->guard);
     axis->heard = false;
     axis->reported = d->cycle;
-    axis->beaten = d->cycle;
+    axis->heartbeat = d->cycle;
 }
 
 /*
@@ -164,10 +165,10 @@ static void send_enabling(struct drives *d, const struct can_port *port)
         return;
     struct drives_axis *turn = &d->axis[d->cycle % d->count];
     if (turn->heard)
-        send_controlword(turn, port, drives_controlword(d, turn), false);
+        send_controlword(turn, port, takt_drives_controlword(d, turn), false);
     for (unsigned i = 0; i < d->count; i++)
-        if (!drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
-            drives_rest(&d->axis[i]);
+        if (!takt_drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
+            takt_drives_rest(&d->axis[i]);
     send_targets(d, port);
 }
 
@@ -176,7 +177,7 @@ static void send_starting(struct drives *d, const struct can_port *port)
     switch (d->phase) {
     case DRIVES_BOOT:
         send_resets(d, port);
-        drives_io_send_resets(d, port);
+        takt_drives_io_send_resets(d, port);
         break;
     case DRIVES_CONFIGURE:
         send_holds(d, port);
@@ -184,7 +185,7 @@ static void send_starting(struct drives *d, const struct can_port *port)
         break;
     case DRIVES_IO:
         send_request(d, port);
-        drives_io_send_start(d, port);
+        takt_drives_io_send_start(d, port);
         break;
     case DRIVES_START:
         send_start(d, port);
@@ -217,7 +218,8 @@ static inline void set_target(struct drives *d, unsigned index, double set_mm)
     if (maths_abs(increments) < INCREMENTS_MAX + 0.5)
         axis->target_inc = nearest(increments);
     else
-        drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, drives_axis_shown(axis, set_mm), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, takt_drives_axis_shown(axis, set_mm),
+                          NULL);
 }
 
 /* The lag is that of the setpoint to which the last report belongs; without a report in this cycle it is not known. */
@@ -226,7 +228,7 @@ static void steer(struct drives *d, unsigned i)
     const struct drives_axis *axis = &d->axis[i];
     const bool is_new = drives_silent_cycles(d, axis) == 0;
     const double lag_mm = drives_sent(d, DRIVES_LATENCY_CYCLES)[i] - axis->actual_mm;
-    drives_steer(d, i, drives_sent(d, 0)[i] - drives_sent(d, 1)[i], is_new ? lag_mm : 0);
+    takt_drives_steer(d, i, drives_sent(d, 0)[i] - drives_sent(d, 1)[i], is_new ? lag_mm : 0);
 }
 
 static void steer_all(struct drives *d)
@@ -247,7 +249,7 @@ static void send_operation(struct drives *d, const struct can_port *port,
     if (d->steers)
         steer_all(d);
     if (d->state == DRIVES_STOPPING)
-        drives_watch_stop(d);
+        takt_drives_watch_stop(d);
     if (d->state == DRIVES_ENABLED || d->state == DRIVES_STOPPING)
         send_targets(d, port);
     if (drives_probe_is_busy(d))
@@ -264,16 +266,16 @@ static void send_quick_stop(struct drives *d, const struct can_port *port)
         struct drives_axis *axis = &d->axis[i];
         bool is_told = axis->controlword == CIA402_QUICK_STOP_NOW;
         if (!is_told ||
-            (i == turn && (drives_axis_is_enabled(axis) || drives_silent_cycles(d, axis) > 1)))
+            (i == turn && (takt_drives_axis_is_enabled(axis) || drives_silent_cycles(d, axis) > 1)))
             send_controlword(axis, port, CIA402_QUICK_STOP_NOW, true);
     }
 }
 
-void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint)
+void takt_drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint)
 {
     send_heartbeat(d, port);
     if (d->guards)
-        drives_send_guard(d, port);
+        takt_drives_send_guard(d, port);
     switch (d->state) {
     case DRIVES_STARTING:
         send_starting(d, port);
@@ -295,9 +297,9 @@ void drives_send(struct drives *d, const struct can_port *port, const struct poi
  * One drive a call, in turn: the steps to "operation enabled" without the last one. Bit 7, fault reset, and bit 3, enable
  * operation, stay 0. What the drives have been told to stop by is not forgotten.
  */
-void drives_switch_on_at_rest(struct drives *d, const struct can_port *port)
+void takt_drives_switch_on_at_rest(struct drives *d, const struct can_port *port)
 {
     struct drives_axis turn = d->axis[d->cycle % d->count];
-    const uint16_t step = cia402_step_to_enabled(cia402_state(turn.statusword));
+    const uint16_t step = takt_cia402_step_to_enabled(takt_cia402_state(turn.statusword));
     send_controlword(&turn, port, step & CIA402_SWITCH_ON, true);
 }

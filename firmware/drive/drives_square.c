@@ -11,7 +11,7 @@
 
 #define SQRT_3 1.7320508075688772
 
-void drives_gantry_init(struct drives *d, const struct drives_config *config)
+void takt_drives_gantry_init(struct drives *d, const struct drives_config *config)
 {
     assert(config->gantry_count <= DRIVES_GANTRIES_MAX);
     d->gantry_count = (uint8_t)config->gantry_count;
@@ -25,7 +25,7 @@ void drives_gantry_init(struct drives *d, const struct drives_config *config)
     }
 }
 
-void drives_place_gantries(struct drives *d)
+void takt_drives_place_gantries(struct drives *d)
 {
     for (unsigned i = 0; i < d->gantry_count; i++) {
         const struct drives_axis *first = &d->axis[d->gantry[i].first];
@@ -36,11 +36,11 @@ void drives_place_gantries(struct drives *d)
 static void check_skew(struct drives *d, const struct drives_gantry *gantry, double skew_mm)
 {
     if (maths_abs(skew_mm) > gantry->skew_max_mm)
-        drives_raise(d, gantry->second, TAKT_ERROR_DRIVE_SKEW, maths_abs(skew_mm), NULL);
+        takt_drives_raise(d, gantry->second, TAKT_ERROR_DRIVE_SKEW, maths_abs(skew_mm), NULL);
 }
 
 /* Positions are compared that were sampled by the same SYNC. */
-void drives_check_skew(struct drives *d)
+void takt_drives_check_skew(struct drives *d)
 {
     for (unsigned i = 0; i < d->gantry_count; i++) {
         const struct drives_gantry *gantry = &d->gantry[i];
@@ -57,13 +57,13 @@ static int32_t stands_inc(const struct drives_axis *axis)
     return drives_is_by_velocity(axis) ? axis->actual_inc : axis->target_inc;
 }
 
-void drives_begin_square(struct drives *d)
+void takt_drives_begin_square(struct drives *d)
 {
     if (d->gantry_count == 0) {
-        drives_enter_enabled(d);
+        takt_drives_enter_enabled(d);
         return;
     }
-    drives_enter_phase(d, DRIVES_SQUARE);
+    takt_drives_enter_phase(d, DRIVES_SQUARE);
     for (unsigned i = 0; i < d->gantry_count; i++) {
         struct drives_axis *second = &d->axis[d->gantry[i].second];
         second->braking_inc = stands_inc(second);
@@ -83,14 +83,14 @@ static double square_cycles(const struct drives *d, const struct drives_axis *se
     return 1e6 / d->cycle_us * maths_max(by_velocity_s, by_acceleration_s);
 }
 
-/* u of so many cycles after the beginning. */
+/* u this many cycles after the beginning. */
 static double part_of_way(double cycles, double whole_cycles)
 {
     const double u = cycles < whole_cycles ? maths_max(cycles, 0) / whole_cycles : 1;
     return u * u * u * (10 + u * (6 * u - 15));
 }
 
-/* To where it is in this cycle of a way that takes so many. */
+/* To where it is in this cycle, on a way that takes this many cycles. */
 static void move_second(struct drives *d, unsigned index, double way_inc, double cycles)
 {
     struct drives_axis *second = &d->axis[index];
@@ -101,9 +101,9 @@ static void move_second(struct drives *d, unsigned index, double way_inc, double
     const double lag_inc = second->braking_inc + shown_inc - second->actual_inc;
     const double scale = second->config.increments_per_mm;
     if (drives_is_by_velocity(second))
-        drives_steer(d, index, (now_inc - before_inc) / scale, lag_inc / scale);
+        takt_drives_steer(d, index, (now_inc - before_inc) / scale, lag_inc / scale);
     else
-        second->target_inc = (int32_t)maths_round(second->braking_inc + now_inc);
+        second->target_inc = (int32_t)takt_maths_round(second->braking_inc + now_inc);
 }
 
 /* A cycle of one of them; true: it is square. */
@@ -121,12 +121,12 @@ static bool square(struct drives *d, const struct drives_gantry *gantry)
     return d->phase_cycles >= cycles + DRIVES_LATENCY_CYCLES;
 }
 
-void drives_square(struct drives *d)
+void takt_drives_square(struct drives *d)
 {
     bool all = true;
-    drives_check_all_links(d);
+    takt_drives_check_all_links(d);
     for (unsigned i = 0; i < d->gantry_count; i++)
         all = square(d, &d->gantry[i]) && all;
     if (all && d->state == DRIVES_STARTING)
-        drives_enter_enabled(d);
+        takt_drives_enter_enabled(d);
 }

@@ -30,17 +30,17 @@ static void rewind_to(struct drives *d, unsigned index)
 }
 
 /* Nothing is known of it but that it shares no frame. */
-void drives_begin_axis(struct drives *d, unsigned index)
+void takt_drives_begin_axis(struct drives *d, unsigned index)
 {
     rewind_to(d, index);
     if (index == d->count)
         return;
     d->axis[index].given_up &= 1u << DRIVES_NO_PAIR;
     d->axis[index].guard.is_on = false;
-    drives_forget_pdos(&d->axis[index]);
+    takt_drives_forget_pdos(&d->axis[index]);
 }
 
-void drives_enter_phase(struct drives *d, enum drives_phase phase)
+void takt_drives_enter_phase(struct drives *d, enum drives_phase phase)
 {
     d->phase = phase;
     d->phase_cycles = 0;
@@ -48,7 +48,7 @@ void drives_enter_phase(struct drives *d, enum drives_phase phase)
     d->is_telling = false;
     rewind_to(d, 0);
     if (phase == DRIVES_CONFIGURE)
-        drives_begin_axis(d, 0);
+        takt_drives_begin_axis(d, 0);
 }
 
 /* It is to be configured, which many drives take while they are pre-operational alone. */
@@ -73,13 +73,13 @@ static void begin_again(struct drives *d, unsigned booted)
     for (unsigned i = 0; i < d->count; i++)
         hold(&d->axis[i]);
     bool is_stale = d->phase <= DRIVES_IO && sdo_client_is_busy(&d->sdo) && asked(d) != booted;
-    drives_enter_phase(d, DRIVES_CONFIGURE);
+    takt_drives_enter_phase(d, DRIVES_CONFIGURE);
     d->is_stale = is_stale;
     if (is_stale)
         d->sdo.result = SDO_BUSY;
 }
 
-void drives_start_again(struct drives *d, unsigned index)
+void takt_drives_start_again(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
     if (axis->reset_pending)
@@ -87,7 +87,7 @@ void drives_start_again(struct drives *d, unsigned index)
     axis->booted = true;
     hold(axis);
     if (d->phase >= DRIVES_SELECT || d->restarts++ == RESTARTS_MAX)
-        drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
     else if (d->phase != DRIVES_BOOT)
         begin_again(d, index);
 }
@@ -95,7 +95,7 @@ void drives_start_again(struct drives *d, unsigned index)
 /* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
 static void boot(struct drives *d)
 {
-    bool all = drives_io_boot(d);
+    bool all = takt_drives_io_boot(d);
     for (unsigned i = 0; i < d->count; i++) {
         all = all && d->axis[i].booted;
         if (d->axis[i].booted)
@@ -103,21 +103,21 @@ static void boot(struct drives *d)
         if (d->phase_cycles == d->boot_timeout_cycles)
             d->axis[i].reset_pending = true;
         else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
-            drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT,
-                         2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
+            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT,
+                              2e-3 * takt_drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
     }
     if (all)
-        drives_enter_phase(d, DRIVES_CONFIGURE);
+        takt_drives_enter_phase(d, DRIVES_CONFIGURE);
 }
 
-void drives_ask(struct drives *d, unsigned bus, uint8_t node, const struct drives_step *step)
+void takt_drives_ask(struct drives *d, unsigned bus, uint8_t node, const struct drives_step *step)
 {
     d->sdo_bus = (uint8_t)bus;
     if (step->length > 0)
-        sdo_client_download_number(&d->sdo, node, step->object, step->value, step->length,
-                                   d->sdo_timeout_cycles);
+        takt_sdo_client_download_number(&d->sdo, node, step->object, step->value, step->length,
+                                        d->sdo_timeout_cycles);
     else
-        sdo_client_upload(&d->sdo, node, step->object, d->sdo_timeout_cycles);
+        takt_sdo_client_upload(&d->sdo, node, step->object, d->sdo_timeout_cycles);
 }
 
 /* The next request of this part of the configuration is made; false: there is none. */
@@ -127,21 +127,21 @@ static bool ask_of_part(struct drives *d)
     bool is_any = false;
     switch ((enum drives_part)d->at_part) {
     case DRIVES_DCF:
-        return drives_ask_dcf(d);
+        return takt_drives_ask_dcf(d);
     case DRIVES_ASK:
-        is_any = drives_next_ask(d, &step);
+        is_any = takt_drives_next_ask(d, &step);
         break;
     case DRIVES_SET:
-        is_any = drives_next_set(d, &step);
+        is_any = takt_drives_next_set(d, &step);
         break;
     case DRIVES_MAP:
-        is_any = drives_next_map(d, &step);
+        is_any = takt_drives_next_map(d, &step);
         break;
     case DRIVES_PARTS:
         break;
     }
     if (is_any)
-        drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis], &step);
+        takt_drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis], &step);
     return is_any;
 }
 
@@ -176,9 +176,9 @@ static void check_shared(struct drives *d, unsigned i)
         if (k == i || is_pair || drives_bus_of(d, k) != drives_bus_of(d, i))
             continue;
         if (other->target_frame.length > 0 && takes(axis, other->target_frame.cob_id))
-            drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->target_frame.cob_id, NULL);
+            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->target_frame.cob_id, NULL);
         else if (other->control_frame.length > 0 && takes(axis, other->control_frame.cob_id))
-            drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->control_frame.cob_id, NULL);
+            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->control_frame.cob_id, NULL);
     }
 }
 
@@ -186,11 +186,11 @@ static void check_load(struct drives *d)
 {
     struct drives_load load;
     for (unsigned bus = 0; bus < drives_bus_count(d) && d->state == DRIVES_STARTING; bus++) {
-        drives_get_load(d, bus, &load);
+        takt_drives_get_load(d, bus, &load);
         if (load.percent <= 100.0)
             continue;
-        drives_set_overload(&load, bus, &d->fault);
-        drives_brake(d);
+        takt_drives_set_overload(&load, bus, &d->fault);
+        takt_drives_brake(d);
     }
 }
 
@@ -200,14 +200,14 @@ static void next_step(struct drives *d)
     while (d->at_axis < d->count && d->state == DRIVES_STARTING) {
         if (ask_next(d))
             return;
-        drives_begin_axis(d, d->at_axis + 1u);
+        takt_drives_begin_axis(d, d->at_axis + 1u);
     }
     for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++)
         check_shared(d, i);
     if (d->state == DRIVES_STARTING)
         check_load(d);
     if (d->state == DRIVES_STARTING)
-        drives_enter_phase(d, d->io_count > 0 ? DRIVES_IO : DRIVES_START);
+        takt_drives_enter_phase(d, d->io_count > 0 ? DRIVES_IO : DRIVES_START);
 }
 
 static void take_answer(struct drives *d)
@@ -215,15 +215,15 @@ static void take_answer(struct drives *d)
     const struct sdo_client *sdo = &d->sdo;
     bool is_done = sdo->result == SDO_DONE;
     const struct drives_answer answer = {.abort_code = is_done ? SDO_ABORT_NONE : sdo->abort_code,
-                                         .value = is_done ? sdo_client_number(sdo) : 0};
+                                         .value = is_done ? takt_sdo_client_number(sdo) : 0};
     if (d->at_part == DRIVES_ASK)
-        drives_take_ask(d, &answer);
+        takt_drives_take_ask(d, &answer);
     else if (d->at_part == DRIVES_DCF)
-        drives_take_dcf(d);
+        takt_drives_take_dcf(d);
     else if (d->at_part == DRIVES_SET)
-        drives_take_set(d, &answer);
+        takt_drives_take_set(d, &answer);
     else
-        drives_take_map(d, &answer);
+        takt_drives_take_map(d, &answer);
 }
 
 /*
@@ -236,8 +236,8 @@ static void miss_answer(struct drives *d)
     bool is_first = d->at_part == DRIVES_ASK && d->at_step == 0;
     bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
     if (!(may_boot || d->repeats++ < DRIVES_SDO_REPEATS) || !ask_next(d))
-        drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNANSWERED,
-                            drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
+        takt_drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNANSWERED,
+                                 takt_drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
 }
 
 /* A request of a configuration that has been begun again has come to its end. */
@@ -279,7 +279,7 @@ static bool all_are_started(const struct drives *d)
 static bool all_are_enabled(const struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
-        if (!drives_axis_is_enabled(&d->axis[i]))
+        if (!takt_drives_axis_is_enabled(&d->axis[i]))
             return false;
     return true;
 }
@@ -289,27 +289,27 @@ static void enter_operation(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
         d->axis[i].emcy_code = EMCY_NONE;
-    drives_home_next(d);
+    takt_drives_home_next(d);
 }
 
 static void raise_not_enabled(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
-    enum cia402_state state = cia402_state(axis->statusword);
+    enum cia402_state state = takt_cia402_state(axis->statusword);
     if (!axis->heard)
-        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
-                     drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
+                          takt_drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else if (state == CIA402_FAULT)
-        drives_raise_reported(d, index, axis->emcy_code);
+        takt_drives_raise_reported(d, index, axis->emcy_code);
     else
-        drives_raise(d, index, TAKT_ERROR_DRIVE_NOT_ENABLED, axis->statusword,
-                     cia402_state_text(state));
+        takt_drives_raise(d, index, TAKT_ERROR_DRIVE_NOT_ENABLED, axis->statusword,
+                          takt_cia402_state_text(state));
 }
 
 static void raise_late(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
-        if (!drives_axis_is_enabled(&d->axis[i]))
+        if (!takt_drives_axis_is_enabled(&d->axis[i]))
             raise_not_enabled(d, i);
 }
 
@@ -323,7 +323,7 @@ static void enable(struct drives *d)
 
 /* ---- What does not fit into a PDO ---- */
 
-bool drives_tells_mode(const struct drives_axis *axis)
+bool takt_drives_tells_mode(const struct drives_axis *axis)
 {
     return drives_has_given_up(axis, DRIVES_NO_MODE_PDO) && axis->told_mode != axis->mode;
 }
@@ -334,29 +334,29 @@ bool drives_tells_mode(const struct drives_axis *axis)
  */
 #define RESET_US 32000U
 
-uint16_t drives_controlword(const struct drives *d, const struct drives_axis *axis)
+uint16_t takt_drives_controlword(const struct drives *d, const struct drives_axis *axis)
 {
-    enum cia402_state state = cia402_state(axis->statusword);
+    enum cia402_state state = takt_cia402_state(axis->statusword);
     if (state == CIA402_FAULT && d->phase_cycles / (RESET_US / d->cycle_us + 1) % 2 == 1)
         return CIA402_DISABLE_VOLTAGE;
     uint16_t command = state == CIA402_ENABLED ? axis->command : 0;
-    return (uint16_t)(cia402_step_to_enabled(state) | command);
+    return (uint16_t)(takt_cia402_step_to_enabled(state) | command);
 }
 
 static bool tells_control(const struct drives *d, const struct drives_axis *axis)
 {
     return drives_has_given_up(axis, DRIVES_NO_CONTROL_PDO) && axis->heard &&
-           axis->controlword != drives_controlword(d, axis);
+           axis->controlword != takt_drives_controlword(d, axis);
 }
 
 /* The mode first: the controlword is meant for it. */
 static void tell(struct drives *d, const struct drives_axis *axis)
 {
-    bool is_mode = drives_tells_mode(axis);
+    bool is_mode = takt_drives_tells_mode(axis);
     uint32_t object = (is_mode ? CIA402_MODE : CIA402_CONTROLWORD) & ~0xFFu;
     const struct drives_step step = {object, is_mode ? 1 : 2,
-                                     is_mode ? axis->mode : drives_controlword(d, axis)};
-    drives_ask(d, drives_axis_bus(axis), axis->config.node, &step);
+                                     is_mode ? axis->mode : takt_drives_controlword(d, axis)};
+    takt_drives_ask(d, drives_axis_bus(axis), axis->config.node, &step);
     d->is_telling = true;
     d->tells = (uint8_t)(d->tells + (d->tells <= TELLS_MAX));
 }
@@ -368,12 +368,12 @@ static void take_told(struct drives *d)
     struct drives_axis *axis = &d->axis[index];
     d->is_telling = false;
     if (d->sdo.result == SDO_ABORTED)
-        drives_raise_object(d, index, d->sdo.object, TAKT_ERROR_DRIVE_REFUSES, d->sdo.abort_code,
-                            sdo_abort_text(d->sdo.abort_code));
+        takt_drives_raise_object(d, index, d->sdo.object, TAKT_ERROR_DRIVE_REFUSES,
+                                 d->sdo.abort_code, takt_sdo_abort_text(d->sdo.abort_code));
     else if (d->sdo.result == SDO_DONE && sdo_index(d->sdo.object) == sdo_index(CIA402_MODE))
-        axis->told_mode = (uint8_t)sdo_client_number(&d->sdo);
+        axis->told_mode = (uint8_t)takt_sdo_client_number(&d->sdo);
     else if (d->sdo.result == SDO_DONE)
-        axis->controlword = (uint16_t)sdo_client_number(&d->sdo);
+        axis->controlword = (uint16_t)takt_sdo_client_number(&d->sdo);
     d->sdo.result = SDO_IDLE;
 }
 
@@ -384,7 +384,7 @@ static void tell_by_sdo(struct drives *d)
     if (d->sdo.result != SDO_IDLE || d->state != DRIVES_STARTING)
         return;
     for (unsigned i = 0; i < d->count && !d->is_telling; i++)
-        if (drives_tells_mode(&d->axis[i]) || tells_control(d, &d->axis[i]))
+        if (takt_drives_tells_mode(&d->axis[i]) || tells_control(d, &d->axis[i]))
             tell(d, &d->axis[i]);
 }
 
@@ -407,33 +407,33 @@ static void run_phase(struct drives *d)
     case DRIVES_IO:
         settle_request(d);
         if (!d->is_stale)
-            drives_io_start(d);
+            takt_drives_io_start(d);
         break;
     case DRIVES_START:
         if (all_are_started(d))
-            drives_enter_phase(d, DRIVES_ENABLE);
+            takt_drives_enter_phase(d, DRIVES_ENABLE);
         break;
     case DRIVES_ENABLE:
         enable(d);
         break;
     case DRIVES_SELECT:
-        drives_select(d);
+        takt_drives_select(d);
         break;
     case DRIVES_HOME:
-        drives_home(d);
+        takt_drives_home(d);
         break;
     case DRIVES_FOLLOW:
-        drives_follow(d);
+        takt_drives_follow(d);
         break;
     case DRIVES_SQUARE:
-        drives_square(d);
+        takt_drives_square(d);
         break;
     }
 }
 
-void drives_start(struct drives *d)
+void takt_drives_start(struct drives *d)
 {
-    sdo_client_tick(&d->sdo);
+    takt_sdo_client_tick(&d->sdo);
     count_cycle(d);
     if (d->phase >= DRIVES_ENABLE)
         tell_by_sdo(d);

@@ -72,13 +72,13 @@ struct drives_axis {
         report_id; /* TPDO with statusword and position in the plain form, drives_receive.c; as status_id */
     uint8_t sends; /* enum drives_sends */
     bool reset_pending;
-    bool hold_pending; /* it is to be pre-operational */
-    bool booted;       /* its boot-up message has come */
-    bool started;      /* NMT start has been sent */
-    bool heard;        /* a TPDO1 has come since it was started */
-    bool is_latched;   /* its touch probe has; where stands in struct drives.read */
-    uint32_t reported; /* cycle of the last TPDO1 */
-    uint32_t beaten;   /* and of the last heartbeat */
+    bool hold_pending;  /* it is to be pre-operational */
+    bool booted;        /* its boot-up message has come */
+    bool started;       /* NMT start has been sent */
+    bool heard;         /* a TPDO1 has come since it was started */
+    bool is_latched;    /* its touch probe has; where stands in struct drives.read */
+    uint32_t reported;  /* cycle of the last TPDO1 */
+    uint32_t heartbeat; /* and of the last heartbeat */
     uint16_t statusword;
     int32_t actual_inc;
     double actual_mm;   /* the same */
@@ -116,7 +116,7 @@ struct drives_axis {
 /* An I/O node, as the start has found it and as it is. */
 struct drives_io {
     uint32_t reported;                        /* cycle of its last inputs */
-    uint32_t beaten;                          /* and of its last heartbeat */
+    uint32_t heartbeat;                       /* and of its last heartbeat */
     uint16_t inverted, stop_bits, limit_bits; /* of its inputs */
     uint16_t levels;                          /* of its inputs, inverted ones as they are meant */
     uint16_t low_limits; /* limit inputs that were low when they were looked at last */
@@ -143,8 +143,8 @@ struct drives {
     uint32_t cycle_us;
     uint8_t controller_node;
     uint16_t heartbeat_ms;
-    uint32_t heartbeat_cycles;      /* period */
-    uint32_t heartless_most_cycles; /* without one from a drive */
+    uint32_t heartbeat_cycles;         /* period */
+    uint32_t heartbeat_age_max_cycles; /* without one from a drive */
     uint32_t boot_timeout_cycles;
     uint32_t start_timeout_cycles;
     uint32_t answer_timeout_cycles;
@@ -166,7 +166,7 @@ struct drives {
     uint32_t io_cycles; /* since all outputs were sent */
 
     enum drives_state state;
-    uint32_t cycle;                      /* counts drives_send; wraps */
+    uint32_t cycle;                      /* counts takt_drives_send; wraps */
     uint32_t beat_cycles[CAN_BUSES_MAX]; /* since our last heartbeat */
 
     enum drives_phase phase;

@@ -8,13 +8,13 @@ static void add(struct word *word, char c)
         word->text[word->length++] = c;
 }
 
-void word_add_text(struct word *word, const char *text)
+void takt_word_add_text(struct word *word, const char *text)
 {
     while (*text != '\0')
         add(word, *text++);
 }
 
-void word_add_number(struct word *word, uint32_t number)
+void takt_word_add_number(struct word *word, uint32_t number)
 {
     char digits[DIGITS_MAX];
     unsigned count = 0;
@@ -26,7 +26,7 @@ void word_add_number(struct word *word, uint32_t number)
         add(word, digits[--count]);
 }
 
-void word_add_hex(struct word *word, uint32_t number, unsigned digits)
+void takt_word_add_hex(struct word *word, uint32_t number, unsigned digits)
 {
     while (digits-- > 0)
         add(word, "0123456789ABCDEF"[number >> (4 * digits) & 15]);

@@ -13,9 +13,9 @@ struct word {
     unsigned length;
 };
 
-void word_add_text(struct word *word, const char *text);
-void word_add_number(struct word *word, uint32_t number);
-/* With so many digits, 1 ... 8. */
-void word_add_hex(struct word *word, uint32_t number, unsigned digits);
+void takt_word_add_text(struct word *word, const char *text);
+void takt_word_add_number(struct word *word, uint32_t number);
+/* With this many digits, 1 ... 8. */
+void takt_word_add_hex(struct word *word, uint32_t number, unsigned digits);
 
 #endif

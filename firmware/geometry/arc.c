@@ -30,7 +30,7 @@ struct arc_state {
     double cosine, sine;
 };
 
-void plane_axes(enum plane plane, enum axis *first, enum axis *second)
+void takt_plane_axes(enum plane plane, enum axis *first, enum axis *second)
 {
     static const unsigned char axes[3][2] = {{AXIS_X, AXIS_Y}, {AXIS_Z, AXIS_X}, {AXIS_Y, AXIS_Z}};
 
@@ -139,13 +139,13 @@ static double spoke_length(struct spoke s)
     return maths_sqrt(s.x * s.x + s.y * s.y);
 }
 
-void curve_begin_arc(struct curve *c, const struct point *start, const struct point *end,
-                     enum plane plane, const double centre_mm[2])
+void takt_curve_begin_arc(struct curve *c, const struct point *start, const struct point *end,
+                          enum plane plane, const double centre_mm[2])
 {
     enum axis first;
     enum axis second;
 
-    plane_axes(plane, &first, &second);
+    takt_plane_axes(plane, &first, &second);
     memset(c, 0, sizeof(*c));
     c->kind = CURVE_ARC;
     c->start = *start;
@@ -157,10 +157,10 @@ void curve_begin_arc(struct curve *c, const struct point *start, const struct po
     const struct spoke from = spoke_to(c, start);
 
     c->arc.radius_start_mm = spoke_length(from);
-    c->arc.angle_start_rad = maths_atan2(from.y, from.x);
+    c->arc.angle_start_rad = takt_maths_atan2(from.y, from.x);
 }
 
-bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns)
+bool takt_curve_end_arc(struct curve *c, bool clockwise, unsigned turns)
 {
     const struct spoke from = spoke_to(c, &c->start);
     const struct spoke to = spoke_to(c, &c->end);
@@ -170,7 +170,7 @@ bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns)
 
     c->arc.radius_change_mm = radius_end - c->arc.radius_start_mm;
     c->arc.sweep_rad =
-        arc_sweep(c->arc.angle_start_rad, maths_atan2(to.y, to.x), clockwise, closed, turns);
+        arc_sweep(c->arc.angle_start_rad, takt_maths_atan2(to.y, to.x), clockwise, closed, turns);
     if (c->arc.radius_start_mm == 0.0 || radius_end == 0.0) {
         return false;
     }
@@ -179,14 +179,14 @@ bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns)
     return c->length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
-bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
-                   enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns)
+bool takt_curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
+                        enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns)
 {
-    curve_begin_arc(c, start, end, plane, centre_mm);
-    return curve_end_arc(c, clockwise, turns);
+    takt_curve_begin_arc(c, start, end, plane, centre_mm);
+    return takt_curve_end_arc(c, clockwise, turns);
 }
 
-static bool is_bent(const struct curve *c)
+static bool is_curved(const struct curve *c)
 {
     return c->arc.bend_start != 0.0 || c->arc.bend_end != 0.0;
 }
@@ -194,7 +194,7 @@ static bool is_bent(const struct curve *c)
 /* f, u = s / L */
 static double fraction(const struct curve *c, double u)
 {
-    if (!is_bent(c)) {
+    if (!is_curved(c)) {
         return u;
     }
     return u + u * (1.0 - u) * (c->arc.bend_start * (1.0 - u) - c->arc.bend_end * u);
@@ -205,7 +205,7 @@ static void locate_point(const struct curve *c, double s_mm, struct arc_state *a
 {
     a->f = fraction(c, s_mm / c->length_mm);
     a->radius_mm = c->arc.radius_start_mm + c->arc.radius_change_mm * a->f;
-    maths_sincos(c->arc.angle_start_rad + c->arc.sweep_rad * a->f, &a->sine, &a->cosine);
+    takt_maths_sincos(c->arc.angle_start_rad + c->arc.sweep_rad * a->f, &a->sine, &a->cosine);
 }
 
 static void arc_locate(const struct curve *c, double s_mm, struct arc_state *a)
@@ -244,7 +244,7 @@ static void tangent_of(const struct curve *c, const struct arc_state *a, struct 
     t->at[c->arc.second] = along * a->sine + across * a->cosine;
 }
 
-void arc_point(const struct curve *c, double s_mm, struct point *p)
+void takt_arc_point(const struct curve *c, double s_mm, struct point *p)
 {
     struct arc_state a;
 
@@ -252,7 +252,7 @@ void arc_point(const struct curve *c, double s_mm, struct point *p)
     point_of(c, &a, p);
 }
 
-void arc_tangent(const struct curve *c, double s_mm, struct point *t)
+void takt_arc_tangent(const struct curve *c, double s_mm, struct point *t)
 {
     struct arc_state a;
 
@@ -260,7 +260,8 @@ void arc_tangent(const struct curve *c, double s_mm, struct point *t)
     tangent_of(c, &a, t);
 }
 
-void arc_point_and_tangent(const struct curve *c, double s_mm, struct point *p, struct point *t)
+void takt_arc_point_and_tangent(const struct curve *c, double s_mm, struct point *p,
+                                struct point *t)
 {
     struct arc_state a;
 
@@ -273,7 +274,7 @@ void arc_point_and_tangent(const struct curve *c, double s_mm, struct point *p, 
  * d2x/ds2 = d2x/df2 f'^2 + dx/df f''; in the plane
  * d2x/df2 = -radius sweep^2 (cos, sin) + 2 radius_change sweep (-sin, cos)
  */
-void arc_curvature(const struct curve *c, double s_mm, struct point *k)
+void takt_arc_curvature(const struct curve *c, double s_mm, struct point *k)
 {
     struct arc_state a;
 
@@ -304,7 +305,7 @@ void arc_curvature(const struct curve *c, double s_mm, struct point *k)
  *     along  <= w d F1^2 + (R w + d) F2
  *     across <= 4 d w^2 F1^3 + 3 (R w + 2 d) w F1 F2
  */
-void arc_bound(const struct curve *c, struct curve_bounds *b)
+void takt_arc_bound(const struct curve *c, struct curve_bounds *b)
 {
     const double bends = maths_abs(c->arc.bend_start) + maths_abs(c->arc.bend_end);
     const double inverse = 1.0 / c->length_mm;

@@ -4,10 +4,11 @@
 
 #include "geometry/curve.h"
 
-void arc_point(const struct curve *c, double s_mm, struct point *p);
-void arc_tangent(const struct curve *c, double s_mm, struct point *t);
-void arc_point_and_tangent(const struct curve *c, double s_mm, struct point *p, struct point *t);
-void arc_curvature(const struct curve *c, double s_mm, struct point *k);
-void arc_bound(const struct curve *c, struct curve_bounds *b);
+void takt_arc_point(const struct curve *c, double s_mm, struct point *p);
+void takt_arc_tangent(const struct curve *c, double s_mm, struct point *t);
+void takt_arc_point_and_tangent(const struct curve *c, double s_mm, struct point *p,
+                                struct point *t);
+void takt_arc_curvature(const struct curve *c, double s_mm, struct point *k);
+void takt_arc_bound(const struct curve *c, struct curve_bounds *b);
 
 #endif

@@ -19,7 +19,7 @@
 
 enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE, CURVE_QUINTIC, CURVE_SPLINE };
 
-/* The plane of a bent curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
+/* The plane of a curved curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
 enum plane { PLANE_XY, PLANE_ZX, PLANE_YZ };
 
 /*
@@ -82,7 +82,7 @@ struct curve {
     double length_mm; /* > 0 */
     struct point start, end;
     struct point
-        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in the plane of a bent curve */
+        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in the plane of a curved curve */
     union {
         struct curve_arc arc;           /* kind CURVE_ARC alone */
         struct curve_involute involute; /* kind CURVE_INVOLUTE alone */
@@ -98,7 +98,7 @@ struct curve_bounds {
     double third
         [AXIS_COUNT]; /* max |d3x_i/ds3|, 1/mm2; in an involute's plane its part along the path */
     double radius_min_mm; /* smallest radius of curvature; 0: straight */
-    /* The plane of a bent curve: how far from a circle's. Both are 0 for a circle. */
+    /* The plane of a curved curve: how far from a circle's. Both are 0 for a circle. */
     double second_along; /* max part of d2x/ds2 along the path, 1/mm */
     double third_across; /* max part of d3x/ds3 across it, 1/mm2 */
     /*
@@ -109,21 +109,22 @@ struct curve_bounds {
 };
 
 /*
- * Line from start to end. False when it is shorter than CURVE_LENGTH_MIN_MM (or so many rad): *c is then not usable.
+ * Line from start to end. False when it is shorter than CURVE_LENGTH_MIN_MM (or as many rad): *c is then not usable.
  */
-bool curve_set_line(struct curve *c, const struct point *start, const struct point *end);
+bool takt_curve_set_line(struct curve *c, const struct point *start, const struct point *end);
 
 /*
  * Arc or helix from start to end about centre_mm (absolute, first and second axis of the plane), turns >= 1:
  * a full circle when start and end coincide in the plane. Radii at start and end may differ: the radius then
  * changes linearly with the angle. False when either radius is 0 or the arc is shorter than CURVE_LENGTH_MIN_MM.
  */
-bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
-                   enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns);
+bool takt_curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
+                        enum plane plane, const double centre_mm[2], bool clockwise,
+                        unsigned turns);
 /* The same in two halves, for a control cycle that has no time for both. */
-void curve_begin_arc(struct curve *c, const struct point *start, const struct point *end,
-                     enum plane plane, const double centre_mm[2]);
-bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns);
+void takt_curve_begin_arc(struct curve *c, const struct point *start, const struct point *end,
+                          enum plane plane, const double centre_mm[2]);
+bool takt_curve_end_arc(struct curve *c, bool clockwise, unsigned turns);
 
 /*
  * Involute of a circle from start to end, turning clockwise or not; every other axis moves in proportion to the length.
@@ -132,57 +133,58 @@ bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns);
  * False when both are equally far from the centre, one of them is in it, or farther than CURVE_UNROLLED_MAX_RAD times the
  * radius, or both are inside the base circle, or the curve is shorter than CURVE_LENGTH_MIN_MM.
  */
-bool curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
-                        enum plane plane, const double centre_mm[2], double base_radius_mm,
-                        bool clockwise);
+bool takt_curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
+                             enum plane plane, const double centre_mm[2], double base_radius_mm,
+                             bool clockwise);
 
 /*
  * Piece of a spline in a plane, short enough that its course tells it (nurbs.c). No other axis moves. False when it is
  * shorter than CURVE_LENGTH_MIN_MM.
  */
-bool curve_set_quintic(struct curve *c, const struct point *start, const struct point *end,
-                       enum plane plane, const struct curve_course *course);
+bool takt_curve_set_quintic(struct curve *c, const struct point *start, const struct point *end,
+                            enum plane plane, const struct curve_course *course);
 
 /*
  * Piece of a uniform cubic B-spline between the second and the third of four control points; s goes 0 ... length_mm > 0
  * evenly with the spline's parameter. Counts as linear: set rotary when only rotary axes move.
  */
-void curve_set_spline(struct curve *c, const struct point control[4], double length_mm);
+void takt_curve_set_spline(struct curve *c, const struct point control[4], double length_mm);
 
 /*
  * Where the piece of c that begins at from_mm ends: within one piece the curvature changes by a bounded ratio, so that
  * one limit of feed serves it. Only involutes have more than one piece.
  */
-double curve_piece_end(const struct curve *c, double from_mm);
+double takt_curve_piece_end(const struct curve *c, double from_mm);
 
 /* The part of c between two places, 0 <= from < to <= length. Lines and arcs have one piece, themselves. */
-void curve_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece);
+void takt_curve_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece);
 
 /*
  * True when it starts, or ends, on the base circle of an involute: the curvature there is infinite, and the axes must
  * stand.
  */
-bool curve_starts_at_cusp(const struct curve *c);
-bool curve_ends_at_cusp(const struct curve *c);
+bool takt_curve_starts_at_cusp(const struct curve *c);
+bool takt_curve_ends_at_cusp(const struct curve *c);
 
-/* The plane of a bent curve; false: a line. */
-bool curve_plane(const struct curve *c, enum axis *first, enum axis *second);
+/* The plane of a curved curve; false: a line. */
+bool takt_curve_plane(const struct curve *c, enum axis *first, enum axis *second);
 
 /* True when s counts radians of rotary axes, because no linear axis moves. */
-bool curve_is_rotary(const struct curve *c);
+bool takt_curve_is_rotary(const struct curve *c);
 
 /* Point at 0 <= s <= length. At the length it is the end but for rounding. */
-void curve_point(const struct curve *c, double s_mm, struct point *p);
+void takt_curve_point(const struct curve *c, double s_mm, struct point *p);
 
 /* d point / d s and d2 point / d s2 at s. */
-void curve_tangent(const struct curve *c, double s_mm, struct point *t);
+void takt_curve_tangent(const struct curve *c, double s_mm, struct point *t);
 /* Both, which have much in common. */
-void curve_point_and_tangent(const struct curve *c, double s_mm, struct point *p, struct point *t);
-void curve_curvature(const struct curve *c, double s_mm, struct point *k);
+void takt_curve_point_and_tangent(const struct curve *c, double s_mm, struct point *p,
+                                  struct point *t);
+void takt_curve_curvature(const struct curve *c, double s_mm, struct point *k);
 
-void curve_bound(const struct curve *c, struct curve_bounds *b);
+void takt_curve_bound(const struct curve *c, struct curve_bounds *b);
 
 /* First and second axis of a plane. */
-void plane_axes(enum plane plane, enum axis *first, enum axis *second);
+void takt_plane_axes(enum plane plane, enum axis *first, enum axis *second);
 
 #endif

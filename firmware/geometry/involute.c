@@ -53,7 +53,7 @@ struct ends {
     double turned_rad; /* T */
 };
 
-double involute_turned(double distance_mm, double radius_mm)
+double takt_involute_turned(double distance_mm, double radius_mm)
 {
     const double ratio = distance_mm / radius_mm;
 
@@ -62,7 +62,7 @@ double involute_turned(double distance_mm, double radius_mm)
     }
     const double phi = maths_sqrt((ratio - 1.0) * (ratio + 1.0));
 
-    return phi - maths_atan2(phi, 1.0);
+    return phi - takt_maths_atan2(phi, 1.0);
 }
 
 /* phi at the distance d when 1 / r = u. */
@@ -78,7 +78,8 @@ static double excess(const struct ends *e, double u, double *slope)
     const double outer = unrolled(e->outer_mm, u);
 
     *slope = (outer - inner) / u;
-    return (outer - maths_atan2(outer, 1.0)) - (inner - maths_atan2(inner, 1.0)) - e->turned_rad;
+    return (outer - takt_maths_atan2(outer, 1.0)) - (inner - takt_maths_atan2(inner, 1.0)) -
+           e->turned_rad;
 }
 
 /* The radius of the base circle about C that suits both ends; that of the inner end if none does. */
@@ -106,7 +107,7 @@ static double fit_radius(const struct ends *e, double radius_mm)
 
 static double angle_of(const struct point *p, const struct curve_involute *i)
 {
-    return maths_atan2(p->at[i->second] - i->centre_mm[1], p->at[i->first] - i->centre_mm[0]);
+    return takt_maths_atan2(p->at[i->second] - i->centre_mm[1], p->at[i->first] - i->centre_mm[0]);
 }
 
 static double distance_of(const struct point *p, const struct curve_involute *i)
@@ -123,10 +124,10 @@ static double turned_between(const struct curve *c, double radius_mm, bool clock
 {
     const double angle = angle_of(&c->end, &c->involute) - angle_of(&c->start, &c->involute);
     const double wanted =
-        involute_turned(e->outer_mm, radius_mm) - involute_turned(e->inner_mm, radius_mm);
+        takt_involute_turned(e->outer_mm, radius_mm) - takt_involute_turned(e->inner_mm, radius_mm);
     const double off = (clockwise ? -angle : angle) - wanted;
 
-    return wanted + (off - MATHS_TWO_PI * maths_round(off / MATHS_TWO_PI));
+    return wanted + (off - MATHS_TWO_PI * takt_maths_round(off / MATHS_TWO_PI));
 }
 
 /* Where the string ends when phi is unrolled, from the centre. */
@@ -135,7 +136,7 @@ static void string_end(const struct curve_involute *i, double phi, double at[2])
     double sine;
     double cosine;
 
-    maths_sincos(i->heading_rad + i->hand * phi, &sine, &cosine);
+    takt_maths_sincos(i->heading_rad + i->hand * phi, &sine, &cosine);
     at[0] = i->radius_mm * (cosine + i->hand * phi * sine);
     at[1] = i->radius_mm * (sine - i->hand * phi * cosine);
 }
@@ -159,7 +160,7 @@ static void move_cusp(struct curve_involute *i, const struct point *inner,
     i->centre_mm[0] = inner->at[i->first] - cusp[0] * re + cusp[1] * im;
     i->centre_mm[1] = inner->at[i->second] - cusp[0] * im - cusp[1] * re;
     i->radius_mm *= maths_sqrt(re * re + im * im);
-    i->heading_rad += maths_atan2(im, re);
+    i->heading_rad += takt_maths_atan2(im, re);
 }
 
 /* Base circle and heading. Returns phi of the inner and of the outer end. */
@@ -184,7 +185,7 @@ static void fit(struct curve *c, double radius_mm, bool clockwise, double unroll
     unrolled_rad[0] = unrolled(e.inner_mm, 1.0 / i->radius_mm);
     unrolled_rad[1] = unrolled(e.outer_mm, 1.0 / i->radius_mm);
     i->heading_rad =
-        angle_of(inner, i) - i->hand * (unrolled_rad[0] - maths_atan2(unrolled_rad[0], 1.0));
+        angle_of(inner, i) - i->hand * (unrolled_rad[0] - takt_maths_atan2(unrolled_rad[0], 1.0));
 }
 
 /* Length, and all that goes with it; unrolled_rad at the inner and at the outer end. */
@@ -221,16 +222,16 @@ static void set_slope(struct curve *c)
     }
 }
 
-bool curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
-                        enum plane plane, const double centre_mm[2], double base_radius_mm,
-                        bool clockwise)
+bool takt_curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
+                             enum plane plane, const double centre_mm[2], double base_radius_mm,
+                             bool clockwise)
 {
     struct curve_involute *i = &c->involute;
     double unrolled_rad[2];
     enum axis first;
     enum axis second;
 
-    plane_axes(plane, &first, &second);
+    takt_plane_axes(plane, &first, &second);
     memset(c, 0, sizeof(*c));
     c->kind = CURVE_INVOLUTE;
     c->start = *start;
@@ -255,14 +256,14 @@ bool curve_set_involute(struct curve *c, const struct point *start, const struct
     return c->length_mm >= CURVE_LENGTH_MIN_MM && unrolled_rad[1] <= 2.0 * CURVE_UNROLLED_MAX_RAD;
 }
 
-double involute_unrolled(const struct curve *c, double s_mm)
+double takt_involute_unrolled(const struct curve *c, double s_mm)
 {
     const struct curve_involute *i = &c->involute;
 
     return maths_sqrt(maths_max(0.0, i->square_start_rad2 + i->square_rate_rad2_mm * s_mm));
 }
 
-double involute_place(const struct curve *c, double unrolled_rad)
+double takt_involute_place(const struct curve *c, double unrolled_rad)
 {
     const struct curve_involute *i = &c->involute;
 
@@ -272,15 +273,15 @@ double involute_place(const struct curve *c, double unrolled_rad)
 /* Sine and cosine of the heading t away from the base circle. */
 static void heading(const struct curve_involute *i, double phi, double *sine, double *cosine)
 {
-    maths_sincos(i->heading_rad + i->hand * phi, sine, cosine);
+    takt_maths_sincos(i->heading_rad + i->hand * phi, sine, cosine);
 }
 
-void involute_point(const struct curve *c, double s_mm, struct point *p)
+void takt_involute_point(const struct curve *c, double s_mm, struct point *p)
 {
     const struct curve_involute *i = &c->involute;
     double at[2];
 
-    string_end(i, involute_unrolled(c, s_mm), at);
+    string_end(i, takt_involute_unrolled(c, s_mm), at);
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         p->at[axis] = c->start.at[axis] + c->slope.at[axis] * s_mm;
     }
@@ -288,24 +289,24 @@ void involute_point(const struct curve *c, double s_mm, struct point *p)
     p->at[i->second] = i->centre_mm[1] + at[1];
 }
 
-void involute_tangent(const struct curve *c, double s_mm, struct point *t)
+void takt_involute_tangent(const struct curve *c, double s_mm, struct point *t)
 {
     const struct curve_involute *i = &c->involute;
     const double along = i->outward ? i->plane_ratio : -i->plane_ratio;
     double sine;
     double cosine;
 
-    heading(i, involute_unrolled(c, s_mm), &sine, &cosine);
+    heading(i, takt_involute_unrolled(c, s_mm), &sine, &cosine);
     *t = c->slope;
     t->at[i->first] = along * cosine;
     t->at[i->second] = along * sine;
 }
 
 /* Curvature q^2 / (r phi), q the plane's share of the length; it changes by q^3 / (r^2 phi^3). */
-struct involute_bending involute_bend(const struct curve *c, double s_mm)
+struct involute_bending takt_involute_bend(const struct curve *c, double s_mm)
 {
     const struct curve_involute *i = &c->involute;
-    const double phi = maths_max(involute_unrolled(c, s_mm), UNROLLED_MIN_RAD);
+    const double phi = maths_max(takt_involute_unrolled(c, s_mm), UNROLLED_MIN_RAD);
     const double per_mm = i->plane_ratio / (i->radius_mm * phi);
 
     return (struct involute_bending){
@@ -315,14 +316,14 @@ struct involute_bending involute_bend(const struct curve *c, double s_mm)
 }
 
 /* d2P/ds2 lies across the curve: to the left of its heading away from the base circle when that turns left. */
-void involute_curvature(const struct curve *c, double s_mm, struct point *k)
+void takt_involute_curvature(const struct curve *c, double s_mm, struct point *k)
 {
     const struct curve_involute *i = &c->involute;
-    const double curvature = involute_bend(c, s_mm).curvature_1_mm;
+    const double curvature = takt_involute_bend(c, s_mm).curvature_1_mm;
     double sine;
     double cosine;
 
-    heading(i, involute_unrolled(c, s_mm), &sine, &cosine);
+    heading(i, takt_involute_unrolled(c, s_mm), &sine, &cosine);
     memset(k, 0, sizeof(*k));
     k->at[i->first] = -i->hand * curvature * sine;
     k->at[i->second] = i->hand * curvature * cosine;
@@ -332,7 +333,7 @@ void involute_curvature(const struct curve *c, double s_mm, struct point *k)
 static void bound_plane(const struct curve *c, struct curve_bounds *b, int axis)
 {
     const struct curve_involute *i = &c->involute;
-    const struct involute_bending bend = involute_bend(c, i->outward ? 0.0 : c->length_mm);
+    const struct involute_bending bend = takt_involute_bend(c, i->outward ? 0.0 : c->length_mm);
 
     b->first[axis] = i->plane_ratio;
     if (i->cusp_start || i->cusp_end) {
@@ -345,7 +346,7 @@ static void bound_plane(const struct curve *c, struct curve_bounds *b, int axis)
     b->third_across = bend.change_1_mm2;
 }
 
-void involute_bound(const struct curve *c, struct curve_bounds *b)
+void takt_involute_bound(const struct curve *c, struct curve_bounds *b)
 {
     const struct curve_involute *i = &c->involute;
 
@@ -356,16 +357,16 @@ void involute_bound(const struct curve *c, struct curve_bounds *b)
     bound_plane(c, b, i->first);
     bound_plane(c, b, i->second);
     if (i->cusp_start || i->cusp_end) {
-        b->cusp_rad = involute_unrolled(c, i->outward ? c->length_mm : 0.0);
+        b->cusp_rad = takt_involute_unrolled(c, i->outward ? c->length_mm : 0.0);
     }
 }
 
-double involute_cusp_acceleration(double cusp_rad)
+double takt_involute_cusp_acceleration(double cusp_rad)
 {
     return maths_sqrt(1.0 + cusp_rad * cusp_rad);
 }
 
-double involute_cusp_jerk(double cusp_rad)
+double takt_involute_cusp_jerk(double cusp_rad)
 {
     const double along = 1.0 + 1.125 * cusp_rad * cusp_rad;
     const double across = 5.625 * cusp_rad;
@@ -373,10 +374,10 @@ double involute_cusp_jerk(double cusp_rad)
     return maths_sqrt(along * along + across * across);
 }
 
-double involute_step_max(const struct curve *c, double error_mm)
+double takt_involute_step_max(const struct curve *c, double error_mm)
 {
     const struct curve_involute *i = &c->involute;
-    const double root = maths_cbrt(6.75 * error_mm * maths_sqrt(1.125 * i->radius_mm));
+    const double root = takt_maths_cbrt(6.75 * error_mm * maths_sqrt(1.125 * i->radius_mm));
 
     return root * root / i->plane_ratio;
 }
@@ -384,17 +385,17 @@ double involute_step_max(const struct curve *c, double error_mm)
 /* From phi to the next of the fewest equal ratios, none above PIECE_LN_RATIO, that lead to the other one. */
 static double next_unrolled(double from_rad, double to_rad)
 {
-    const double ln = maths_ln(to_rad / from_rad);
-    const double pieces = maths_ceil(maths_abs(ln) / PIECE_LN_RATIO);
+    const double ln = takt_maths_ln(to_rad / from_rad);
+    const double pieces = takt_maths_ceil(maths_abs(ln) / PIECE_LN_RATIO);
 
-    return pieces > 1.0 ? from_rad * maths_exp(ln / pieces) : to_rad;
+    return pieces > 1.0 ? from_rad * takt_maths_exp(ln / pieces) : to_rad;
 }
 
-double involute_piece_end(const struct curve *c, double from_mm)
+double takt_involute_piece_end(const struct curve *c, double from_mm)
 {
     const struct curve_involute *i = &c->involute;
-    const double from = involute_unrolled(c, from_mm);
-    const double last = involute_unrolled(c, c->length_mm);
+    const double from = takt_involute_unrolled(c, from_mm);
+    const double last = takt_involute_unrolled(c, c->length_mm);
     double to = last;
 
     if (i->cusp_start && from_mm == 0.0) {
@@ -404,10 +405,11 @@ double involute_piece_end(const struct curve *c, double from_mm)
     } else if (from > CUSP_PIECE_MAX_RAD) {
         to = next_unrolled(from, CUSP_PIECE_RAD);
     }
-    return to == last ? c->length_mm : maths_clamp(involute_place(c, to), from_mm, c->length_mm);
+    return to == last ? c->length_mm
+                      : maths_clamp(takt_involute_place(c, to), from_mm, c->length_mm);
 }
 
-void involute_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece)
+void takt_involute_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece)
 {
     struct curve_involute *i = &piece->involute;
 
@@ -415,23 +417,23 @@ void involute_cut(const struct curve *c, double from_mm, double to_mm, struct cu
     piece->length_mm = to_mm - from_mm;
     i->square_start_rad2 += i->square_rate_rad2_mm * from_mm;
     if (from_mm > 0.0) {
-        involute_point(c, from_mm, &piece->start);
+        takt_involute_point(c, from_mm, &piece->start);
         i->cusp_start = false;
     }
     if (to_mm < c->length_mm) {
-        involute_point(c, to_mm, &piece->end);
+        takt_involute_point(c, to_mm, &piece->end);
         i->cusp_end = false;
     }
 }
 
-bool involute_extreme(const struct curve *c, unsigned quarter, double *s_mm)
+bool takt_involute_extreme(const struct curve *c, unsigned quarter, double *s_mm)
 {
     const struct curve_involute *i = &c->involute;
-    const double from = involute_unrolled(c, i->outward ? 0.0 : c->length_mm);
-    const double to = involute_unrolled(c, i->outward ? c->length_mm : 0.0);
+    const double from = takt_involute_unrolled(c, i->outward ? 0.0 : c->length_mm);
+    const double to = takt_involute_unrolled(c, i->outward ? c->length_mm : 0.0);
     double phi = i->hand * (quarter * MATHS_HALF_PI - i->heading_rad);
 
-    phi += MATHS_TWO_PI * maths_floor((to - phi) / MATHS_TWO_PI);
-    *s_mm = maths_clamp(involute_place(c, phi), 0.0, c->length_mm);
+    phi += MATHS_TWO_PI * takt_maths_floor((to - phi) / MATHS_TWO_PI);
+    *s_mm = maths_clamp(takt_involute_place(c, phi), 0.0, c->length_mm);
     return phi >= from;
 }

@@ -25,46 +25,46 @@ struct involute_bending {
     double change_1_mm2;   /* |d curvature / d s| */
 };
 
-void involute_point(const struct curve *c, double s_mm, struct point *p);
-void involute_tangent(const struct curve *c, double s_mm, struct point *t);
-void involute_curvature(const struct curve *c, double s_mm, struct point *k);
-void involute_bound(const struct curve *c, struct curve_bounds *b);
-double involute_piece_end(const struct curve *c, double from_mm);
-void involute_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece);
+void takt_involute_point(const struct curve *c, double s_mm, struct point *p);
+void takt_involute_tangent(const struct curve *c, double s_mm, struct point *t);
+void takt_involute_curvature(const struct curve *c, double s_mm, struct point *k);
+void takt_involute_bound(const struct curve *c, struct curve_bounds *b);
+double takt_involute_piece_end(const struct curve *c, double from_mm);
+void takt_involute_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece);
 
 /* Finite on the base circle too: then far above what any machine can follow. */
-struct involute_bending involute_bend(const struct curve *c, double s_mm);
+struct involute_bending takt_involute_bend(const struct curve *c, double s_mm);
 
 /* Angle unrolled at s, >= 0. */
-double involute_unrolled(const struct curve *c, double s_mm);
+double takt_involute_unrolled(const struct curve *c, double s_mm);
 
 /* Where the unrolled angle is that: the inverse. */
-double involute_place(const struct curve *c, double unrolled_rad);
+double takt_involute_place(const struct curve *c, double unrolled_rad);
 
 /*
  * phi - atan phi, phi = sqrt((d / r)^2 - 1): how far the vector from the centre has turned since the base circle when
  * it is d long. 0 inside the base circle.
  */
-double involute_turned(double distance_mm, double radius_mm);
+double takt_involute_turned(double distance_mm, double radius_mm);
 
 /*
  * The outermost place whose heading is quarter pi / 2: there the curve is farthest in one direction of its plane.
  * False: it does not reach that heading.
  */
-bool involute_extreme(const struct curve *c, unsigned quarter, double *s_mm);
+bool takt_involute_extreme(const struct curve *c, unsigned quarter, double *s_mm);
 
 /*
  * By how much longer than along the path acceleration and jerk are within a piece that turns by cusp_rad from the base
  * circle: sqrt(1 + phi^2), sqrt((1 + 9/8 phi^2)^2 + (45/8 phi)^2).
  */
-double involute_cusp_acceleration(double cusp_rad);
-double involute_cusp_jerk(double cusp_rad);
+double takt_involute_cusp_acceleration(double cusp_rad);
+double takt_involute_cusp_jerk(double cusp_rad);
 
 /*
  * Longest step whose chord leaves the curve by error_mm at most, wherever it begins. It is the one from the base
  * circle, where the curve is y = sqrt(8 / (9 r)) x^(3/2) and a chord of length l leaves it by
  * (4/27) sqrt(8 / (9 r)) l^(3/2).
  */
-double involute_step_max(const struct curve *c, double error_mm);
+double takt_involute_step_max(const struct curve *c, double error_mm);
 
 #endif

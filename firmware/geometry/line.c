@@ -15,7 +15,7 @@ static double length_over(const struct point *delta, int from, int to)
     return maths_sqrt(sum);
 }
 
-bool curve_set_line(struct curve *c, const struct point *start, const struct point *end)
+bool takt_curve_set_line(struct curve *c, const struct point *start, const struct point *end)
 {
     struct point delta;
 
@@ -41,14 +41,14 @@ bool curve_set_line(struct curve *c, const struct point *start, const struct poi
 }
 
 /* x(s) = start + slope s */
-void line_point(const struct curve *c, double s_mm, struct point *p)
+void takt_line_point(const struct curve *c, double s_mm, struct point *p)
 {
     for (int i = 0; i < AXIS_COUNT; i++) {
         p->at[i] = c->start.at[i] + c->slope.at[i] * s_mm;
     }
 }
 
-void line_bound(const struct curve *c, struct curve_bounds *b)
+void takt_line_bound(const struct curve *c, struct curve_bounds *b)
 {
     memset(b, 0, sizeof(*b));
     for (int i = 0; i < AXIS_COUNT; i++) {

@@ -4,7 +4,7 @@
 
 #include "geometry/curve.h"
 
-void line_point(const struct curve *c, double s_mm, struct point *p);
-void line_bound(const struct curve *c, struct curve_bounds *b);
+void takt_line_point(const struct curve *c, double s_mm, struct point *p);
+void takt_line_bound(const struct curve *c, struct curve_bounds *b);
 
 #endif

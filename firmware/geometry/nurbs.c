@@ -45,14 +45,14 @@ struct place {
     double at[2], first[2], second[2];
 };
 
-void nurbs_open(struct nurbs *n, unsigned order)
+void takt_nurbs_open(struct nurbs *n, unsigned order)
 {
     assert(order >= NURBS_ORDER_MIN && order <= NURBS_ORDER_MAX);
     memset(n, 0, sizeof(*n));
     n->order = order;
 }
 
-void nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight)
+void takt_nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight)
 {
     double *p = n->point[n->points % NURBS_KEPT];
 
@@ -73,7 +73,7 @@ static double knot_at(const struct nurbs *n, uint32_t index)
     return n->knot[index % NURBS_KEPT];
 }
 
-void nurbs_add_knot(struct nurbs *n, double knot)
+void takt_nurbs_add_knot(struct nurbs *n, double knot)
 {
     n->knot[n->knots % NURBS_KEPT] = knot;
     n->knots++;
@@ -178,7 +178,7 @@ static bool set_end(const struct place *p, unsigned end, struct curve_course *co
     if (!(v > 0.0)) {
         return false;
     }
-    course->heading_rad[end] = maths_atan2(p->first[1], p->first[0]);
+    course->heading_rad[end] = takt_maths_atan2(p->first[1], p->first[0]);
     course->curvature_1_mm[end] =
         (p->first[0] * p->second[1] - p->first[1] * p->second[0]) / (v * v * v);
     return maths_is_finite(course->curvature_1_mm[end]);
@@ -212,7 +212,7 @@ static void set_straight(const struct place *from, const struct place *to,
     const double way[2] = {to->at[0] - from->at[0], to->at[1] - from->at[1]};
 
     *course = (struct curve_course){.length_mm = maths_sqrt(way[0] * way[0] + way[1] * way[1])};
-    course->heading_rad[0] = course->heading_rad[1] = maths_atan2(way[1], way[0]);
+    course->heading_rad[0] = course->heading_rad[1] = takt_maths_atan2(way[1], way[0]);
 }
 
 /* Distance of a point from the part, near v: its foot by Newton's steps v += (x - p) p' / p'^2. */
@@ -242,8 +242,8 @@ static bool fits(const struct part *part, const struct place *from, const struct
     const double turn = course->heading_rad[1] - course->heading_rad[0];
     struct curve c;
 
-    if (maths_abs(turn - MATHS_TWO_PI * maths_round(turn / MATHS_TWO_PI)) > TURN_MAX ||
-        !curve_set_quintic(&c, &start, &end, PLANE_XY, course)) {
+    if (maths_abs(turn - MATHS_TWO_PI * takt_maths_round(turn / MATHS_TWO_PI)) > TURN_MAX ||
+        !takt_curve_set_quintic(&c, &start, &end, PLANE_XY, course)) {
         return false;
     }
     for (unsigned quarter = 1; quarter < 4; quarter++) {
@@ -251,8 +251,8 @@ static bool fits(const struct part *part, const struct place *from, const struct
         struct point x;
         struct point t;
 
-        curve_point(&c, s_mm, &x);
-        curve_tangent(&c, s_mm, &t);
+        takt_curve_point(&c, s_mm, &x);
+        takt_curve_tangent(&c, s_mm, &t);
         const double uneven = t.at[0] * t.at[0] + t.at[1] * t.at[1] - 1.0;
 
         if (!(maths_abs(uneven) <= 2.0 * UNEVEN_MAX &&
@@ -290,7 +290,7 @@ static bool take_piece(struct nurbs *n, double to, const struct nurbs_piece *pie
     return piece->course.length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
-enum nurbs_result nurbs_next(struct nurbs *n, struct nurbs_piece *piece)
+enum nurbs_result takt_nurbs_next(struct nurbs *n, struct nurbs_piece *piece)
 {
     while (n->within) {
         const double end = knot_at(n, span_of(n) + 1);

@@ -23,7 +23,7 @@
 
 struct nurbs {
     uint32_t order;              /* degree + 1 */
-    uint32_t points, knots;      /* so many have come */
+    uint32_t points, knots;      /* that have come */
     bool within;                 /* the span of the newest knot is not finished */
     double at;                   /* parameter up to which there are pieces */
     double point[NURBS_KEPT][3]; /* both coordinates times the weight, and the weight */
@@ -42,16 +42,16 @@ enum nurbs_result {
     NURBS_CUSP /* the curve turns back or stops within, where it has no direction: nothing more comes */
 };
 
-void nurbs_open(struct nurbs *n, unsigned order);
+void takt_nurbs_open(struct nurbs *n, unsigned order);
 
 /* weight > 0 */
-void nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight);
+void takt_nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight);
 
 /*
- * Not below the one before. No more than order knots more than points; only after nurbs_next has said NURBS_NONE.
+ * Not below the one before. No more than order knots more than points; only after takt_nurbs_next has said NURBS_NONE.
  */
-void nurbs_add_knot(struct nurbs *n, double knot);
+void takt_nurbs_add_knot(struct nurbs *n, double knot);
 
-enum nurbs_result nurbs_next(struct nurbs *n, struct nurbs_piece *piece);
+enum nurbs_result takt_nurbs_next(struct nurbs *n, struct nurbs_piece *piece);
 
 #endif

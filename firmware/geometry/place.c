@@ -23,12 +23,12 @@ static double arc_place(const struct curve *c, const struct point *p, double nea
     const double x = p->at[c->arc.first] - c->arc.centre_mm[0];
     const double y = p->at[c->arc.second] - c->arc.centre_mm[1];
     const double turn = MATHS_TWO_PI / maths_abs(c->arc.sweep_rad);
-    const double part = (maths_atan2(y, x) - c->arc.angle_start_rad) / c->arc.sweep_rad;
+    const double part = (takt_maths_atan2(y, x) - c->arc.angle_start_rad) / c->arc.sweep_rad;
 
-    return part + turn * maths_round((near - part) / turn);
+    return part + turn * takt_maths_round((near - part) / turn);
 }
 
-double curve_place(const struct curve *c, const struct point *p, double near)
+double takt_curve_place(const struct curve *c, const struct point *p, double near)
 {
     if (c->kind == CURVE_LINE) {
         return line_place(c, p);

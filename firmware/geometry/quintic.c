@@ -61,15 +61,15 @@ static void set_axis(struct curve *c, unsigned i, const double tangent[2], const
     k[3] = 6.0 * d - l * (3.0 * tangent[0] + 3.0 * tangent[1]) - square * (bend[0] - bend[1]);
 }
 
-bool curve_set_quintic(struct curve *c, const struct point *start, const struct point *end,
-                       enum plane plane, const struct curve_course *course)
+bool takt_curve_set_quintic(struct curve *c, const struct point *start, const struct point *end,
+                            enum plane plane, const struct curve_course *course)
 {
     double sine[2];
     double cosine[2];
     enum axis first;
     enum axis second;
 
-    plane_axes(plane, &first, &second);
+    takt_plane_axes(plane, &first, &second);
     memset(c, 0, sizeof(*c));
     c->kind = CURVE_QUINTIC;
     c->start = *start;
@@ -78,7 +78,7 @@ bool curve_set_quintic(struct curve *c, const struct point *start, const struct 
     c->quintic.first = (unsigned char)first;
     c->quintic.second = (unsigned char)second;
     for (unsigned i = 0; i < 2; i++) {
-        maths_sincos(course->heading_rad[i], &sine[i], &cosine[i]);
+        takt_maths_sincos(course->heading_rad[i], &sine[i], &cosine[i]);
     }
     const double *k = course->curvature_1_mm;
 
@@ -87,7 +87,7 @@ bool curve_set_quintic(struct curve *c, const struct point *start, const struct 
     return c->length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
-void quintic_point(const struct curve *c, double s_mm, struct point *p)
+void takt_quintic_point(const struct curve *c, double s_mm, struct point *p)
 {
     const double u = s_mm / c->length_mm;
 
@@ -100,7 +100,7 @@ void quintic_point(const struct curve *c, double s_mm, struct point *p)
     }
 }
 
-void quintic_tangent(const struct curve *c, double s_mm, struct point *t)
+void takt_quintic_tangent(const struct curve *c, double s_mm, struct point *t)
 {
     const double u = s_mm / c->length_mm;
 
@@ -115,7 +115,7 @@ void quintic_tangent(const struct curve *c, double s_mm, struct point *t)
     }
 }
 
-void quintic_curvature(const struct curve *c, double s_mm, struct point *bend)
+void takt_quintic_curvature(const struct curve *c, double s_mm, struct point *bend)
 {
     const double u = s_mm / c->length_mm;
 
@@ -210,7 +210,7 @@ static double product_max(double a[][2], unsigned n, double b[][2], unsigned m, 
  * Along and across count by the direction, which x' has but for its length q, nearly 1: both are divided by the least q. As
  * parts of the whole they are never above it: so a piece that hardly bends, or whose bend only changes, has sane ratios.
  */
-void quintic_bound(const struct curve *c, struct curve_bounds *b)
+void takt_quintic_bound(const struct curve *c, struct curve_bounds *b)
 {
     struct hull h;
 
@@ -234,24 +234,24 @@ void quintic_bound(const struct curve *c, struct curve_bounds *b)
 }
 
 /* A piece turns by less than half a turn, so a component of its direction changes its sign once at most. */
-bool quintic_extreme(const struct curve *c, unsigned in_plane, double *s_mm)
+bool takt_quintic_extreme(const struct curve *c, unsigned in_plane, double *s_mm)
 {
     const unsigned axis = axis_of(c, in_plane);
     double low = 0.0;
     double high = c->length_mm;
     struct point t;
 
-    quintic_tangent(c, low, &t);
+    takt_quintic_tangent(c, low, &t);
     const bool rises = t.at[axis] > 0.0;
 
-    quintic_tangent(c, high, &t);
+    takt_quintic_tangent(c, high, &t);
     if ((t.at[axis] > 0.0) == rises) {
         return false;
     }
     for (unsigned i = 0; i < HALVINGS; i++) {
         const double middle = 0.5 * (low + high);
 
-        quintic_tangent(c, middle, &t);
+        takt_quintic_tangent(c, middle, &t);
         if ((t.at[axis] > 0.0) == rises) {
             low = middle;
         } else {

@@ -4,12 +4,12 @@
 
 #include "geometry/curve.h"
 
-void quintic_point(const struct curve *c, double s_mm, struct point *p);
-void quintic_tangent(const struct curve *c, double s_mm, struct point *t);
-void quintic_curvature(const struct curve *c, double s_mm, struct point *k);
-void quintic_bound(const struct curve *c, struct curve_bounds *b);
+void takt_quintic_point(const struct curve *c, double s_mm, struct point *p);
+void takt_quintic_tangent(const struct curve *c, double s_mm, struct point *t);
+void takt_quintic_curvature(const struct curve *c, double s_mm, struct point *k);
+void takt_quintic_bound(const struct curve *c, struct curve_bounds *b);
 
 /* Where it runs across an axis of its plane (0, 1), s > 0: it is farthest there. False: it does not turn so far. */
-bool quintic_extreme(const struct curve *c, unsigned in_plane, double *s_mm);
+bool takt_quintic_extreme(const struct curve *c, unsigned in_plane, double *s_mm);
 
 #endif

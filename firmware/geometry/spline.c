@@ -38,7 +38,7 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
  *     start  = c1 + (c0 - 2 c1 + c2)/6            slope = (c2 - c0)/(2 d)
  *     square = (c0 - 2 c1 + c2)/(2 d^2)           cube  = (c3 - 3 c2 + 3 c1 - c0)/(6 d^3)
  */
-void curve_set_spline(struct curve *c, const struct point control[4], double length_mm)
+void takt_curve_set_spline(struct curve *c, const struct point control[4], double length_mm)
 {
     const double inverse_mm = 1.0 / length_mm;
 
@@ -51,28 +51,28 @@ void curve_set_spline(struct curve *c, const struct point control[4], double len
     }
 }
 
-void spline_point(const struct curve *c, double s_mm, struct point *p)
+void takt_spline_point(const struct curve *c, double s_mm, struct point *p)
 {
     *p = c->start;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((c->spline.moves & 1U << i) != 0) {
-            const double bent = c->spline.square.at[i] + c->spline.cube.at[i] * s_mm;
+            const double curved = c->spline.square.at[i] + c->spline.cube.at[i] * s_mm;
 
-            p->at[i] += (c->slope.at[i] + bent * s_mm) * s_mm;
+            p->at[i] += (c->slope.at[i] + curved * s_mm) * s_mm;
         }
     }
 }
 
-void spline_tangent(const struct curve *c, double s_mm, struct point *t)
+void takt_spline_tangent(const struct curve *c, double s_mm, struct point *t)
 {
     for (int i = 0; i < AXIS_COUNT; i++) {
-        const double bent = 2.0 * c->spline.square.at[i] + 3.0 * c->spline.cube.at[i] * s_mm;
+        const double curved = 2.0 * c->spline.square.at[i] + 3.0 * c->spline.cube.at[i] * s_mm;
 
-        t->at[i] = c->slope.at[i] + bent * s_mm;
+        t->at[i] = c->slope.at[i] + curved * s_mm;
     }
 }
 
-void spline_curvature(const struct curve *c, double s_mm, struct point *k)
+void takt_spline_curvature(const struct curve *c, double s_mm, struct point *k)
 {
     for (int i = 0; i < AXIS_COUNT; i++) {
         k->at[i] = 2.0 * c->spline.square.at[i] + 6.0 * c->spline.cube.at[i] * s_mm;
@@ -80,14 +80,14 @@ void spline_curvature(const struct curve *c, double s_mm, struct point *k)
 }
 
 /* The tangent is a parabola: it exceeds both its ends by |third| length^2 / 8 at most. */
-void spline_bound(const struct curve *c, struct curve_bounds *b)
+void takt_spline_bound(const struct curve *c, struct curve_bounds *b)
 {
     struct point tangent;
     struct point bend;
 
     memset(b, 0, sizeof(*b));
-    spline_tangent(c, c->length_mm, &tangent);
-    spline_curvature(c, c->length_mm, &bend);
+    takt_spline_tangent(c, c->length_mm, &tangent);
+    takt_spline_curvature(c, c->length_mm, &bend);
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double third = 6.0 * maths_abs(c->spline.cube.at[i]);
         const double ends = maths_max(maths_abs(c->slope.at[i]), maths_abs(tangent.at[i]));

@@ -4,9 +4,9 @@
 
 #include "geometry/curve.h"
 
-void spline_point(const struct curve *c, double s_mm, struct point *p);
-void spline_tangent(const struct curve *c, double s_mm, struct point *t);
-void spline_curvature(const struct curve *c, double s_mm, struct point *k);
-void spline_bound(const struct curve *c, struct curve_bounds *b);
+void takt_spline_point(const struct curve *c, double s_mm, struct point *p);
+void takt_spline_tangent(const struct curve *c, double s_mm, struct point *t);
+void takt_spline_curvature(const struct curve *c, double s_mm, struct point *k);
+void takt_spline_bound(const struct curve *c, struct curve_bounds *b);
 
 #endif

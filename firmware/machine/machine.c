@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-void machine_set_default(struct machine *machine)
+void takt_machine_set_default(struct machine *machine)
 {
     static const char name[] = "built-in three-axis mill";
 
@@ -33,7 +33,7 @@ void machine_set_default(struct machine *machine)
         machine->gantry[i].axis = AXIS_COUNT;
         machine->gantry[i].drive_node = (uint8_t)(NODE_MAX - 1 - i);
     }
-    correction_settings_set_default(&machine->correction);
+    takt_correction_settings_set_default(&machine->correction);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         machine->axis[i] = (struct machine_axis){
             .present = true,
@@ -57,12 +57,12 @@ void machine_set_default(struct machine *machine)
     }
 }
 
-struct drives_rates machine_get_rates(const struct machine *machine)
+struct drives_rates takt_machine_get_rates(const struct machine *machine)
 {
     return (struct drives_rates){machine->can_bitrate, machine->can_data_bitrate};
 }
 
-unsigned machine_axes(const struct machine *machine)
+unsigned takt_machine_axes(const struct machine *machine)
 {
     unsigned axes = 0;
 
@@ -74,7 +74,7 @@ unsigned machine_axes(const struct machine *machine)
     return axes;
 }
 
-unsigned machine_io_count(const struct machine *machine)
+unsigned takt_machine_io_count(const struct machine *machine)
 {
     unsigned count = 0;
 
@@ -84,7 +84,7 @@ unsigned machine_io_count(const struct machine *machine)
     return count;
 }
 
-unsigned machine_gantry_count(const struct machine *machine)
+unsigned takt_machine_gantry_count(const struct machine *machine)
 {
     unsigned count = 0;
 
@@ -106,22 +106,22 @@ static unsigned list_drives(const struct machine *machine, uint8_t node[MACHINE_
             node[count++] = machine->axis[i].drive_node;
         }
     }
-    for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+    for (unsigned i = 0; i < takt_machine_gantry_count(machine); i++) {
         bus[count] = machine->gantry[i].drive_bus;
         node[count++] = machine->gantry[i].drive_node;
     }
     return count;
 }
 
-unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX])
+unsigned takt_machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX])
 {
     uint8_t bus[MACHINE_NODES_MAX];
 
     return list_drives(machine, node, bus);
 }
 
-unsigned machine_bus_nodes(const struct machine *machine, unsigned bus,
-                           uint8_t node[MACHINE_NODES_MAX])
+unsigned takt_machine_bus_nodes(const struct machine *machine, unsigned bus,
+                                uint8_t node[MACHINE_NODES_MAX])
 {
     uint8_t of_bus[MACHINE_NODES_MAX];
     const unsigned all = list_drives(machine, node, of_bus);
@@ -135,7 +135,7 @@ unsigned machine_bus_nodes(const struct machine *machine, unsigned bus,
     return count;
 }
 
-unsigned machine_bus_count(const struct machine *machine)
+unsigned takt_machine_bus_count(const struct machine *machine)
 {
     uint8_t node[MACHINE_NODES_MAX], bus[MACHINE_NODES_MAX];
     const unsigned drives = list_drives(machine, node, bus);
@@ -144,13 +144,13 @@ unsigned machine_bus_count(const struct machine *machine)
     for (unsigned i = 0; i < drives; i++) {
         last = bus[i] > last ? bus[i] : last;
     }
-    for (unsigned i = 0; i < machine_io_count(machine); i++) {
+    for (unsigned i = 0; i < takt_machine_io_count(machine); i++) {
         last = machine->io[i].bus > last ? machine->io[i].bus : last;
     }
     return last + 1;
 }
 
-void machine_motion_bound(const struct machine *machine, struct motion_bound *most)
+void takt_machine_motion_bound(const struct machine *machine, struct motion_bound *most)
 {
     memset(most, 0, sizeof(*most));
     for (int i = 0; i < AXIS_COUNT; i++) {

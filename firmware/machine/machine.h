@@ -1,6 +1,6 @@
 /*
  * A machine: everything the controller must know of the iron it moves. Filled by whoever reads a machine file;
- * machine_set_default is the built-in three-axis mill.
+ * takt_machine_set_default is the built-in three-axis mill.
  */
 #ifndef TAKT_MACHINE_H
 #define TAKT_MACHINE_H
@@ -89,7 +89,7 @@ struct machine {
     uint32_t sharp_corners;   /* 1: cutter compensation does not round outer corners */
     uint32_t
         override_proportional; /* 1: the feed override scales the whole diagram, not the programmed feed alone */
-    uint32_t law;              /* enum law, of ramps */
+    uint32_t profile;           /* enum law, of ramps */
     uint32_t landing;           /* enum landing */
     uint32_t limiter;           /* enum limiter_form, classic/limiter.h */
     uint32_t look_ahead_blocks; /* 1 ... MACHINE_LOOK_AHEAD_MAX */
@@ -128,32 +128,32 @@ struct machine {
  * increments/mm and 1 mm following error; cycle 1 ms, 1000 increments/mm, exact path, 256 blocks of look-ahead,
  * spindle 24,000 rpm with an encoder, CAN at 1 Mbit/s.
  */
-void machine_set_default(struct machine *machine);
+void takt_machine_set_default(struct machine *machine);
 
 #define MACHINE_DATA_BITRATE_MAX 8000000
-struct drives_rates machine_get_rates(const struct machine *machine);
+struct drives_rates takt_machine_get_rates(const struct machine *machine);
 
 /* Bit i set: the machine has axis i. */
-unsigned machine_axes(const struct machine *machine);
+unsigned takt_machine_axes(const struct machine *machine);
 
 /* Gantries from the first on. */
-unsigned machine_gantry_count(const struct machine *machine);
+unsigned takt_machine_gantry_count(const struct machine *machine);
 
 /* Nodes of all drives on CAN, in their order: those of the axes, then the second ones of gantries. Their number. */
 #define MACHINE_DRIVES_MAX AXIS_COUNT
 #define MACHINE_NODES_MAX  (AXIS_COUNT + MACHINE_GANTRIES_MAX) /* before it is checked */
-unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX]);
+unsigned takt_machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX]);
 /* The same of one bus. */
-unsigned machine_bus_nodes(const struct machine *machine, unsigned bus,
-                           uint8_t node[MACHINE_NODES_MAX]);
+unsigned takt_machine_bus_nodes(const struct machine *machine, unsigned bus,
+                                uint8_t node[MACHINE_NODES_MAX]);
 /* Buses up to the last one with a node; at least 1. */
-unsigned machine_bus_count(const struct machine *machine);
+unsigned takt_machine_bus_count(const struct machine *machine);
 
 /* The most the machine's axes do before correction. */
-void machine_motion_bound(const struct machine *machine, struct motion_bound *most);
+void takt_machine_motion_bound(const struct machine *machine, struct motion_bound *most);
 
 /* I/O nodes on all buses. */
-unsigned machine_io_count(const struct machine *machine);
+unsigned takt_machine_io_count(const struct machine *machine);
 
 /* Does the machine have this axis, with a drive of the one kind or of the other? */
 static inline bool machine_axis_is_on_can(const struct machine_axis *axis)

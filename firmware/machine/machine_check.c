@@ -31,8 +31,8 @@ struct checked {
 
 static bool refuse(const struct checked *c, enum takt_error code, double value, double limit)
 {
-    diagnostic_set(c->wrong, code, 0, 0, &c->letter, 1, value);
-    diagnostic_set_limit(c->wrong, limit);
+    takt_diagnostic_set(c->wrong, code, 0, 0, &c->letter, 1, value);
+    takt_diagnostic_set_limit(c->wrong, limit);
     return false;
 }
 
@@ -93,7 +93,7 @@ static bool check_node(const struct checked *c, const struct machine *machine, u
             machine->axis[i].drive_bus == c->axis->drive_bus) {
             const char both[] = {AXIS_LETTERS[i], ' ', 'a', 'n', 'd', ' ', c->letter};
 
-            diagnostic_set(c->wrong, TAKT_ERROR_MACHINE_NODES, 0, 0, both, sizeof both, node);
+            takt_diagnostic_set(c->wrong, TAKT_ERROR_MACHINE_NODES, 0, 0, both, sizeof both, node);
             return false;
         }
     }
@@ -122,7 +122,7 @@ static bool refuse_io(const struct machine *machine, unsigned number, enum takt_
 {
     const char name[] = {'i', 'o', ' ', (char)('1' + number)};
 
-    diagnostic_set(wrong, code, 0, 0, name, sizeof name, machine->io[number].node);
+    takt_diagnostic_set(wrong, code, 0, 0, name, sizeof name, machine->io[number].node);
     return false;
 }
 
@@ -149,7 +149,7 @@ static bool is_axis_node(const struct machine *machine, unsigned bus, unsigned n
     return is_one;
 }
 
-/* Of the second drive of one of the first gantries. */
+/* Is it the node of the second drive of one of the first gantries? */
 static bool is_gantry_node(const struct machine *machine, unsigned count, unsigned bus,
                            unsigned node)
 {
@@ -167,7 +167,7 @@ static bool is_alone(const struct machine *machine, unsigned number)
     const struct io_wiring *io = &machine->io[number];
     bool alone = io->node != machine->controller_node &&
                  !is_axis_node(machine, io->bus, io->node) &&
-                 !is_gantry_node(machine, machine_gantry_count(machine), io->bus, io->node);
+                 !is_gantry_node(machine, takt_machine_gantry_count(machine), io->bus, io->node);
 
     for (unsigned i = 0; i < number; i++)
         alone = alone && !(machine->io[i].node == io->node && machine->io[i].bus == io->bus);
@@ -177,7 +177,7 @@ static bool is_alone(const struct machine *machine, unsigned number)
 /* One after the other from the first on, each id once. */
 static bool check_io(const struct machine *machine, struct diagnostic *wrong)
 {
-    const unsigned count = machine_io_count(machine);
+    const unsigned count = takt_machine_io_count(machine);
 
     for (unsigned i = 0; i < IO_NODES_MAX; i++) {
         const bool is_there = machine->io[i].node != 0;
@@ -198,7 +198,7 @@ static bool gantry_is_well(const struct machine *machine, unsigned number)
     uint8_t node[MACHINE_NODES_MAX];
     bool good = gantry->axis < AXIS_LINEAR_COUNT &&
                 machine_axis_is_on_can(&machine->axis[gantry->axis]) && gantry->skew_max_mm > 0 &&
-                machine_drive_nodes(machine, node) <= MACHINE_DRIVES_MAX &&
+                takt_machine_drive_nodes(machine, node) <= MACHINE_DRIVES_MAX &&
                 gantry->drive_node != machine->controller_node &&
                 !is_axis_node(machine, gantry->drive_bus, gantry->drive_node) &&
                 !is_gantry_node(machine, number, gantry->drive_bus, gantry->drive_node);
@@ -218,53 +218,55 @@ static bool check_gantry_home(const struct machine *machine, unsigned number,
     if (gantry->is_reversed == 0 || gantry->home_method != 0 ||
         machine->axis[gantry->axis].home_method > 0)
         return true;
-    diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY_HOME, 0, 0, &AXIS_LETTERS[gantry->axis], 1, 0);
+    takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY_HOME, 0, 0, &AXIS_LETTERS[gantry->axis], 1,
+                        0);
     return false;
 }
 
 /* One after the other from the first on. */
 static bool check_gantries(const struct machine *machine, struct diagnostic *wrong)
 {
-    const unsigned count = machine_gantry_count(machine);
+    const unsigned count = takt_machine_gantry_count(machine);
     bool good = true;
 
     for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++)
         good = good &&
                (i < count ? gantry_is_well(machine, i) : machine->gantry[i].axis >= AXIS_COUNT);
     if (!good)
-        diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY, 0, 0, "", 0, MACHINE_DRIVES_MAX);
+        takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY, 0, 0, "", 0, MACHINE_DRIVES_MAX);
     for (unsigned i = 0; i < count && good; i++)
         good = check_gantry_home(machine, i, wrong);
     return good;
 }
 
-bool machine_predict_load(const struct machine *machine, unsigned bus, struct drives_load *load)
+bool takt_machine_predict_load(const struct machine *machine, unsigned bus,
+                               struct drives_load *load)
 {
     uint8_t node[MACHINE_NODES_MAX];
-    const struct drives_traffic traffic = {.count = machine_bus_nodes(machine, bus, node),
+    const struct drives_traffic traffic = {.count = takt_machine_bus_nodes(machine, bus, node),
                                            .bus = bus,
                                            .wiring = machine->io,
-                                           .io_count = machine_io_count(machine),
-                                           .rates = machine_get_rates(machine),
+                                           .io_count = takt_machine_io_count(machine),
+                                           .rates = takt_machine_get_rates(machine),
                                            .no_error_pdo = machine->error_pdo == 0};
 
-    return drives_predict_whole_load(&traffic, machine->cycle_us, load);
+    return takt_drives_predict_whole_load(&traffic, machine->cycle_us, load);
 }
 
 /* Each carries its own. */
 static bool check_buses(const struct machine *machine, struct diagnostic *wrong)
 {
-    const unsigned count = machine_bus_count(machine);
+    const unsigned count = takt_machine_bus_count(machine);
     struct drives_load load;
 
     if (count > CAN_BUSES_MAX) {
-        diagnostic_set(wrong, TAKT_ERROR_MACHINE_BUS, 0, 0, "", 0, count - 1);
-        diagnostic_set_limit(wrong, CAN_BUSES_MAX - 1);
+        takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_BUS, 0, 0, "", 0, count - 1);
+        takt_diagnostic_set_limit(wrong, CAN_BUSES_MAX - 1);
         return false;
     }
     for (unsigned bus = 0; bus < count; bus++) {
-        if (!machine_predict_load(machine, bus, &load)) {
-            drives_set_overload(&load, bus, wrong);
+        if (!takt_machine_predict_load(machine, bus, &load)) {
+            takt_drives_set_overload(&load, bus, wrong);
             return false;
         }
     }
@@ -275,7 +277,7 @@ static bool check_buses(const struct machine *machine, struct diagnostic *wrong)
 static bool check_form(bool is_there, const char *name, size_t size, struct diagnostic *wrong)
 {
     if (!is_there)
-        diagnostic_set(wrong, TAKT_ERROR_MACHINE_FORM, 0, 0, name, size - 1, 0);
+        takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_FORM, 0, 0, name, size - 1, 0);
     return is_there;
 }
 
@@ -283,7 +285,7 @@ static bool check_form(bool is_there, const char *name, size_t size, struct diag
 static bool check_forms(const struct machine *machine, struct diagnostic *wrong)
 {
     static const char interpolator[] = "interpolator", limiter[] = "limiter", landing[] = "landing";
-    const bool all = classic_is_there();
+    const bool all = takt_classic_is_there();
 
     return check_form(all || machine->interpolator == INTERPOLATOR_EXACT, interpolator,
                       sizeof interpolator, wrong) &&
@@ -297,18 +299,18 @@ static bool check_rates(const struct machine *machine, struct diagnostic *wrong)
     const uint32_t data = machine->can_data_bitrate;
 
     if (data > 0 && CAN_DATA_MAX == CAN_CLASSIC_MAX)
-        diagnostic_set(wrong, TAKT_ERROR_MACHINE_FD, 0, 0, "", 0, data);
+        takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_FD, 0, 0, "", 0, data);
     else if (data > 0 && data < machine->can_bitrate)
-        diagnostic_set(wrong, TAKT_ERROR_MACHINE_DATA_RATE, 0, 0, "", 0, data);
+        takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_DATA_RATE, 0, 0, "", 0, data);
     else
         return true;
     return false;
 }
 
-bool machine_check(const struct machine *machine, struct diagnostic *wrong)
+bool takt_machine_check(const struct machine *machine, struct diagnostic *wrong)
 {
-    if (machine_axes(machine) == 0) {
-        diagnostic_set(wrong, TAKT_ERROR_MACHINE_NO_AXIS, 0, 0, "", 0, 0);
+    if (takt_machine_axes(machine) == 0) {
+        takt_diagnostic_set(wrong, TAKT_ERROR_MACHINE_NO_AXIS, 0, 0, "", 0, 0);
         return false;
     }
     for (unsigned i = 0; i < AXIS_COUNT; i++) {

@@ -14,9 +14,10 @@
  * Order of travel ends, positions beyond the drives' 32 bits, limits below the rounding of setpoints, step rates, nodes
  * used twice, forms of interpolation and feed that this build does not have, a bus that cannot carry the cycle. False: *wrong says why.
  */
-bool machine_check(const struct machine *machine, struct diagnostic *wrong);
+bool takt_machine_check(const struct machine *machine, struct diagnostic *wrong);
 
 /* What a cycle takes of a bus at worst. True: that bus carries it. */
-bool machine_predict_load(const struct machine *machine, unsigned bus, struct drives_load *load);
+bool takt_machine_predict_load(const struct machine *machine, unsigned bus,
+                               struct drives_load *load);
 
 #endif

@@ -10,7 +10,7 @@ static uint32_t shift8(uint32_t crc)
     return crc;
 }
 
-uint16_t crc16(const uint8_t *data, size_t length)
+uint16_t takt_crc16(const uint8_t *data, size_t length)
 {
     uint32_t crc = 0xFFFF;
 

@@ -8,6 +8,6 @@
 #include <stdint.h>
 
 /* CRC-16/MODBUS: polynomial 8005 reflected, start FFFF. On the wire its low byte comes first. */
-uint16_t crc16(const uint8_t *data, size_t length);
+uint16_t takt_crc16(const uint8_t *data, size_t length);
 
 #endif

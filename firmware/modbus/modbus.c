@@ -162,8 +162,8 @@ static size_t answer_exchange(const struct exchange *x)
     return finish(x, exception, 2 + (size_t)x->reply[1]);
 }
 
-size_t modbus_answer(const struct modbus_map *map, const uint8_t *request, size_t length,
-                     uint8_t *reply)
+size_t takt_modbus_answer(const struct modbus_map *map, const uint8_t *request, size_t length,
+                          uint8_t *reply)
 {
     struct exchange x = {.map = map, .request = request, .length = length};
 
@@ -191,7 +191,7 @@ size_t modbus_answer(const struct modbus_map *map, const uint8_t *request, size_
     }
 }
 
-size_t modbus_request_length(const uint8_t *request, size_t length)
+size_t takt_modbus_request_length(const uint8_t *request, size_t length)
 {
     if (length < 1)
         return 0;

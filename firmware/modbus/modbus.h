@@ -51,14 +51,14 @@ struct modbus_map {
  * Answers a request of length bytes, 1 ... MODBUS_PDU_MAX, function code first. Writes the reply to
  * reply[MODBUS_PDU_MAX] and returns its length, at least 2.
  */
-size_t modbus_answer(const struct modbus_map *map, const uint8_t *request, size_t length,
-                     uint8_t *reply);
+size_t takt_modbus_answer(const struct modbus_map *map, const uint8_t *request, size_t length,
+                          uint8_t *reply);
 
 /*
  * Length that the request whose first bytes these are will have; 0: more bytes are needed to tell, or the function is
  * not one of ours.
  */
-size_t modbus_request_length(const uint8_t *request, size_t length);
+size_t takt_modbus_request_length(const uint8_t *request, size_t length);
 
 /* High byte first. */
 static inline uint16_t modbus_read16(const uint8_t *at)

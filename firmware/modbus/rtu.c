@@ -11,7 +11,7 @@
 /* Unit, function, CRC. */
 #define FRAME_MIN 4
 
-uint32_t modbus_rtu_gap_us(uint32_t bauds, uint32_t bits)
+uint32_t takt_modbus_rtu_gap_us(uint32_t bauds, uint32_t bits)
 {
     if (bauds > FAST_BAUDS)
         return FAST_GAP_US;
@@ -19,8 +19,8 @@ uint32_t modbus_rtu_gap_us(uint32_t bauds, uint32_t bits)
     return (bits * 3500000U + bauds - 1) / bauds;
 }
 
-void modbus_rtu_init(struct modbus_rtu *rtu, const struct modbus_map *map, uint8_t unit,
-                     uint32_t gap_us)
+void takt_modbus_rtu_init(struct modbus_rtu *rtu, const struct modbus_map *map, uint8_t unit,
+                          uint32_t gap_us)
 {
     memset(rtu, 0, sizeof *rtu);
     rtu->map = *map;
@@ -34,7 +34,7 @@ static bool is_whole(const struct modbus_rtu *rtu)
 
     if (rtu->length < FRAME_MIN || rtu->lost)
         return false;
-    crc = crc16(rtu->frame, rtu->length - 2);
+    crc = takt_crc16(rtu->frame, rtu->length - 2);
     return rtu->frame[rtu->length - 2] == (uint8_t)crc &&
            rtu->frame[rtu->length - 1] == (uint8_t)(crc >> 8);
 }
@@ -49,11 +49,11 @@ static size_t answer(struct modbus_rtu *rtu, uint8_t *reply)
 
     if (unit != rtu->unit && unit != MODBUS_RTU_BROADCAST)
         return 0;
-    length = 1 + modbus_answer(&rtu->map, rtu->frame + 1, request, reply + 1);
+    length = 1 + takt_modbus_answer(&rtu->map, rtu->frame + 1, request, reply + 1);
     if (unit == MODBUS_RTU_BROADCAST)
         return 0;
     reply[0] = unit;
-    crc = crc16(reply, length);
+    crc = takt_crc16(reply, length);
     reply[length] = (uint8_t)crc;
     reply[length + 1] = (uint8_t)(crc >> 8);
     return length + 2;
@@ -75,7 +75,7 @@ static bool is_complete(const struct modbus_rtu *rtu)
 
     if (rtu->length < FRAME_MIN)
         return false;
-    length = modbus_request_length(rtu->frame + 1, rtu->length - 1);
+    length = takt_modbus_request_length(rtu->frame + 1, rtu->length - 1);
     return length > 0 && rtu->length == length + 3;
 }
 
@@ -88,9 +88,9 @@ static void add_byte(struct modbus_rtu *rtu, uint8_t byte, uint32_t now_us)
         rtu->lost = true;
 }
 
-size_t modbus_rtu_take(struct modbus_rtu *rtu, uint8_t byte, uint32_t now_us, uint8_t *reply)
+size_t takt_modbus_rtu_take(struct modbus_rtu *rtu, uint8_t byte, uint32_t now_us, uint8_t *reply)
 {
-    const size_t length = modbus_rtu_idle(rtu, now_us, reply);
+    const size_t length = takt_modbus_rtu_idle(rtu, now_us, reply);
 
     add_byte(rtu, byte, now_us);
     if (length > 0 || !is_complete(rtu) || !is_whole(rtu))
@@ -98,7 +98,7 @@ size_t modbus_rtu_take(struct modbus_rtu *rtu, uint8_t byte, uint32_t now_us, ui
     return end_frame(rtu, reply);
 }
 
-size_t modbus_rtu_idle(struct modbus_rtu *rtu, uint32_t now_us, uint8_t *reply)
+size_t takt_modbus_rtu_idle(struct modbus_rtu *rtu, uint32_t now_us, uint8_t *reply)
 {
     if (rtu->length == 0 || now_us - rtu->last_us < rtu->gap_us)
         return 0;

@@ -31,19 +31,19 @@ struct modbus_rtu {
  * The silence that ends a frame at a rate of bauds with bits per character (11 by the standard, 10 without parity): 3.5
  * characters, and 1750 us above 19200 baud (Modbus over Serial Line 1.02, 2.5.1.1).
  */
-uint32_t modbus_rtu_gap_us(uint32_t bauds, uint32_t bits);
+uint32_t takt_modbus_rtu_gap_us(uint32_t bauds, uint32_t bits);
 
 /* unit: 1 ... MODBUS_RTU_UNIT_MAX. */
-void modbus_rtu_init(struct modbus_rtu *rtu, const struct modbus_map *map, uint8_t unit,
-                     uint32_t gap_us);
+void takt_modbus_rtu_init(struct modbus_rtu *rtu, const struct modbus_map *map, uint8_t unit,
+                          uint32_t gap_us);
 
 /*
  * A byte has come. Returns the length of the reply to send, in reply[MODBUS_RTU_MAX]; 0: none. Between the call and the
  * first byte sent the line must be silent for 3.5 characters: the caller's business.
  */
-size_t modbus_rtu_take(struct modbus_rtu *rtu, uint8_t byte, uint32_t now_us, uint8_t *reply);
+size_t takt_modbus_rtu_take(struct modbus_rtu *rtu, uint8_t byte, uint32_t now_us, uint8_t *reply);
 
-/* No byte has come until now: ends a frame when the gap is over. Returns as modbus_rtu_take. */
-size_t modbus_rtu_idle(struct modbus_rtu *rtu, uint32_t now_us, uint8_t *reply);
+/* No byte has come until now: ends a frame when the gap is over. Returns as takt_modbus_rtu_take. */
+size_t takt_modbus_rtu_idle(struct modbus_rtu *rtu, uint32_t now_us, uint8_t *reply);
 
 #endif

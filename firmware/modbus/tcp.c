@@ -8,7 +8,7 @@
 #define LENGTH_MIN 2
 #define LENGTH_MAX (1 + MODBUS_PDU_MAX)
 
-void modbus_tcp_init(struct modbus_tcp *tcp)
+void takt_modbus_tcp_init(struct modbus_tcp *tcp)
 {
     tcp->length = 0;
 }
@@ -36,17 +36,18 @@ static bool header_is_good(const struct modbus_tcp *tcp)
 
 static size_t answer(const struct modbus_tcp *tcp, const struct modbus_map *map, uint8_t *reply)
 {
-    const size_t length = modbus_answer(map, tcp->frame + MODBUS_TCP_HEADER,
-                                        tcp->length - MODBUS_TCP_HEADER, reply + MODBUS_TCP_HEADER);
+    const size_t length =
+        takt_modbus_answer(map, tcp->frame + MODBUS_TCP_HEADER, tcp->length - MODBUS_TCP_HEADER,
+                           reply + MODBUS_TCP_HEADER);
 
     memcpy(reply, tcp->frame, MODBUS_TCP_HEADER);
     modbus_write16(reply + LENGTH_AT, (uint16_t)(length + 1));
     return MODBUS_TCP_HEADER + length;
 }
 
-enum modbus_tcp_result modbus_tcp_take(struct modbus_tcp *tcp, const struct modbus_map *map,
-                                       const uint8_t **data, size_t *size, uint8_t *reply,
-                                       size_t *reply_length)
+enum modbus_tcp_result takt_modbus_tcp_take(struct modbus_tcp *tcp, const struct modbus_map *map,
+                                            const uint8_t **data, size_t *size, uint8_t *reply,
+                                            size_t *reply_length)
 {
     if (tcp->length < LENGTH_END && !fill(tcp, LENGTH_END, data, size))
         return MODBUS_TCP_MORE;

@@ -25,14 +25,14 @@ struct modbus_tcp {
 };
 
 /* A new connection. */
-void modbus_tcp_init(struct modbus_tcp *tcp);
+void takt_modbus_tcp_init(struct modbus_tcp *tcp);
 
 /*
  * Takes bytes from *data, *size of them, and moves both on, up to the end of a request: MODBUS_TCP_REPLY, the reply
  * is in reply[MODBUS_TCP_MAX], *reply_length bytes. Any unit is answered, as itself.
  */
-enum modbus_tcp_result modbus_tcp_take(struct modbus_tcp *tcp, const struct modbus_map *map,
-                                       const uint8_t **data, size_t *size, uint8_t *reply,
-                                       size_t *reply_length);
+enum modbus_tcp_result takt_modbus_tcp_take(struct modbus_tcp *tcp, const struct modbus_map *map,
+                                            const uint8_t **data, size_t *size, uint8_t *reply,
+                                            size_t *reply_length);
 
 #endif

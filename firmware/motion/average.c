@@ -4,16 +4,17 @@
  * The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a cycle. The inputs are not
  * written, which would take as long as the window is: until a box has had n new ones it counts the old ones up by step.
  */
-void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at, uint64_t step)
+void takt_average_start(struct average *a, enum ramp_profile profile, uint32_t cycles, uint64_t at,
+                        uint64_t step)
 {
     uint32_t first = 0;
 
-    a->boxes = law_boxes(law);
+    a->boxes = takt_ramp_profile_boxes(profile);
     a->at = at;
     a->scale = 1;
     for (unsigned b = 0; b < a->boxes; b++) {
         struct average_box *box = &a->box[b];
-        const uint64_t n = law_box_cycles(b, cycles);
+        const uint64_t n = takt_ramp_profile_box_cycles(b, cycles);
 
         box->first = box->next = first;
         first += (uint32_t)n;
@@ -41,7 +42,7 @@ static inline uint64_t take_oldest(struct average_box *box, const uint64_t *plac
     return oldest;
 }
 
-void average_push(struct average *a, uint64_t at)
+void takt_average_push(struct average *a, uint64_t at)
 {
     a->at = at;
     for (unsigned b = 0; b < a->boxes; b++) {

@@ -1,29 +1,30 @@
 #include "motion/handover.h"
 
-void handover_allow(struct motion *m)
+void takt_handover_allow(struct motion *m)
 {
     m->hands_over = true;
 }
 
-void handover_allow_all(struct motion *m)
+void takt_handover_allow_all(struct motion *m)
 {
     m->hands_over_all = true;
 }
 
-void handover_allow_linear(struct motion *m)
+void takt_handover_allow_linear(struct motion *m)
 {
     m->hands_over_all = true;
     m->keeps_rotary = true;
     m->path->divides_rotary = true;
 }
 
-void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
-                        struct cycle_record *record)
+void takt_handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s,
+                             bool landed, struct cycle_record *record)
 {
     const struct block *b = path_first(m->path);
-    struct lead_start start;
+    struct reference_start start;
 
-    (void)lead_step(&m->lead, m->setpoint, true, &start); /* it stands, and takes ceilings */
+    (void)takt_reference_step(&m->reference, m->setpoint, true,
+                              &start); /* it stands, and takes ceilings */
     m->current = m->path->first;
     m->at = *at;
     m->feed = feed_mm_s * m->cycle_s;
@@ -38,18 +39,18 @@ void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm
     m->cycles++;
 }
 
-void handover_pass_block(struct motion *m)
+void takt_handover_pass_block(struct motion *m)
 {
-    path_pass(m->path);
+    takt_path_pass(m->path);
     m->current = m->path->first;
 }
 
-void handover_end(struct motion *m)
+void takt_handover_end(struct motion *m)
 {
     const struct block *b = path_first(m->path);
 
-    lead_stand(&m->lead, b->start + b->length);
-    m->setpoint = m->lead.at;
+    takt_reference_stand(&m->reference, b->start + b->length);
+    m->setpoint = m->reference.at;
     m->feed = 0.0;
     m->at = b->curve.end;
     m->done = true;

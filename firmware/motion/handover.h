@@ -10,22 +10,22 @@
 #include <stdbool.h>
 
 /* From now on motion hands over blocks that follow the spindle; else it runs them at the commanded speed. */
-void handover_allow(struct motion *m);
+void takt_handover_allow(struct motion *m);
 
 /* The same of all blocks but probing moves. */
-void handover_allow_all(struct motion *m);
+void takt_handover_allow_all(struct motion *m);
 
 /* The same, but blocks in which rotary axes move stay motion's. Before anything is pushed onto its path. */
-void handover_allow_linear(struct motion *m);
+void takt_handover_allow_linear(struct motion *m);
 
-/* A cycle was made in the path's oldest block. feed: of the setpoint, as it is programmed. Fills the record as motion_cycle. */
-void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
-                        struct cycle_record *record);
+/* A cycle was made in the path's oldest block. feed: of the setpoint, as it is programmed. Fills the record as takt_motion_cycle. */
+void takt_handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s,
+                             bool landed, struct cycle_record *record);
 
 /* The oldest block is left without a stop; the next one is executed from now on. */
-void handover_pass_block(struct motion *m);
+void takt_handover_pass_block(struct motion *m);
 
 /* The axes stand at the end of the oldest block: motion goes on from there. */
-void handover_end(struct motion *m);
+void takt_handover_end(struct motion *m);
 
 #endif

@@ -11,8 +11,8 @@
  * way if there is none. There are two such ways:
  *
  *     to rest        the change goes by -e to -c, and by e to 0 as the rate does: r = (c^2 - q^2/2)/e
- *     to lead.h      the change goes by e to 0. At a constant rate that is not above that of the pieces everything is
- *                    kept, and the lead point can take over: its own condition for what lies ahead is asked for there
+ *     to reference.h      the change goes by e to 0. At a constant rate that is not above that of the pieces everything is
+ *                    kept, and the trapezoidal reference can take over: its own condition for what lies ahead is asked for there
  *
  * The first needs the pieces as far as the setpoint comes, the second few of them, and is all that a start has. So whatever
  * follows, the way that was found last can be gone on with, by which no limit is ever broken.
@@ -49,16 +49,16 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 /* Where the change cannot be kept, and need not be brought to 0 yet: by this part of it. */
 #define LESS_PART 0.125f
 
-/* The rate is so near to that of the ceiling that the lead point goes on by itself. */
+/* The rate is so near to that of the ceiling that the trapezoidal reference goes on by itself. */
 #define ARRIVED_PART 1e-3f
 
-/* Blocks up to what begins at the lead point that are looked at for each state tried, at most. */
+/* Blocks up to what begins at the trapezoidal reference that are looked at for each state tried, at most. */
 #define BLOCKS_MAX 16
 
-/* Of these, so many are found to be fast enough in a cycle. */
+/* How many of these are found to be fast enough in a cycle, at most. */
 #define CLEAR_MAX 8
 
-/* After so many states in a cycle that the lead point could not go on from, no other is looked for. */
+/* After this many states in a cycle that the trapezoidal reference could not go on from, no other is looked for. */
 #define REFUSALS_MAX 2
 
 /* Rounding. */
@@ -71,16 +71,16 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 /* The highest rate on a block, whatever the overrides are: pieces a cycle. */
 static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
 {
-    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
+    return (float)takt_path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
 }
 
-/* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
+/* Derivatives of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
 static void read_piece(struct hold *h, const struct path *path, uint32_t block)
 {
     struct hold_piece *p = &h->piece[block % HOLD_PIECES_MAX];
     struct point c[4];
 
-    ring_control(&path->ring, block, c);
+    takt_ring_control(&path->ring, block, c);
     for (unsigned i = 0; i < h->axes; i++) {
         const unsigned axis = h->axis[i];
         const double step0 = c[1].at[axis] - c[0].at[axis];
@@ -102,7 +102,7 @@ static double length_of(const struct path *path, uint32_t block)
 /* Does the block go on with the curve of the one before? */
 static bool goes_on(const struct hold *h, const struct path *path, uint32_t block)
 {
-    return path_at(path, block)->smooth && path_at(path, block - 1)->end == JOINT_PASSED &&
+    return path_at(path, block)->smooth && path_at(path, block - 1)->end == JUNCTION_PASSED &&
            length_of(path, block) == h->length;
 }
 
@@ -154,7 +154,7 @@ static void try_advance(struct hold_trial *s, float w, float t)
 /* Does the curve end before a block? */
 static bool is_behind(const struct path *path, uint32_t block)
 {
-    return block == path->closed || path_at(path, block - 1)->end == JOINT_STOP;
+    return block == path->closed || path_at(path, block - 1)->end == JUNCTION_STOP;
 }
 
 /* Goes on past the blocks that are not too fast for the present rate: braking they stay so. */
@@ -174,10 +174,10 @@ static void pass_clear(struct hold *h, const struct path *path)
 }
 
 /*
- * Is the rate of a lead point at a place not above the highest of what it has come to, from the setpoint on? A block from S
+ * Is the rate of a trapezoidal reference at a place not above the highest of what it has come to, from the setpoint on? A block from S
  * on begins for it at S - c b, b half the window and a margin. Pieces.
  */
-static bool tops_allow(const struct hold *h, const struct path *path, const struct lead *l,
+static bool tops_allow(const struct hold *h, const struct path *path, const struct reference *l,
                        const struct hold_trial *s, float ahead)
 {
     const float b = (float)(0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES);
@@ -199,19 +199,19 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
 }
 
 /*
- * The lead point of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
- * cycle in which the change comes to 0, and keeps its feed in the next one (lead_follow). To stop it may be faster than the
+ * The trapezoidal reference of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
+ * cycle in which the change comes to 0, and keeps its feed in the next one (takt_reference_follow). To stop it may be faster than the
  * overrides ask for.
  */
-static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
-                          const struct hold_trial *s, bool stop)
+static bool reference_can_take(const struct hold *h, const struct path *path,
+                               const struct reference *l, const struct hold_trial *s, bool stop)
 {
     const double rate = (double)s->rate * (1.0 + TRIAL_PART);
     const double ahead = (double)s->at + 0.5 * (l->window + 3.0) * rate;
     const uint64_t at = path_start(path, h->block) + (uint64_t)(ahead * h->length);
 
     return (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
-           lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
+           takt_reference_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
 }
 
 /* Does the change go to another one by w within all limits? Neither is on the other side of 0. */
@@ -224,7 +224,7 @@ static bool can_change(const struct hold *h, struct hold_trial *s, float to, flo
 
         try_advance(s, w, t);
         s->change = i + 1 == EASE_PARTS ? to : s->change;
-        if (!hold_can_go(h, &from, s, w)) {
+        if (!takt_hold_can_go(h, &from, s, w)) {
             return false;
         }
     }
@@ -233,10 +233,10 @@ static bool can_change(const struct hold *h, struct hold_trial *s, float to, flo
 
 /*
  * To come to rest the change goes to 0 at no higher a rate than it would have if nothing better was found, r + q^2/2e: where the
- * axes could be far faster than the feed, a softer ease would exceed that. It takes over from a lead point that has that
+ * axes could be far faster than the feed, a softer ease would exceed that. It takes over from a trapezoidal reference that has that
  * rate already, half a window ahead.
  */
-static float highest_rate(const struct hold *h, const struct lead *l)
+static float highest_rate(const struct hold *h, const struct reference *l)
 {
     const double rate = h->place.rate;
     const double change = h->place.change;
@@ -270,8 +270,8 @@ static bool can_rest(const struct hold *h, struct hold_trial s, float e, struct 
            can_change(h, &s, 0.0f, e);
 }
 
-/* The change goes to 0 by e, at a rate and place from which the lead point could go on. */
-static bool can_ease(struct hold *h, const struct path *path, const struct lead *l,
+/* The change goes to 0 by e, at a rate and place from which the trapezoidal reference could go on. */
+static bool can_ease(struct hold *h, const struct path *path, const struct reference *l,
                      struct hold_trial s, float e, bool stop, struct hold_ending *ending)
 {
     ending->ease = (double)e;
@@ -279,7 +279,7 @@ static bool can_ease(struct hold *h, const struct path *path, const struct lead 
     if (!(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
         return false;
     }
-    if (h->refusals < REFUSALS_MAX && lead_can_take(h, path, l, &s, stop)) {
+    if (h->refusals < REFUSALS_MAX && reference_can_take(h, path, l, &s, stop)) {
         return true;
     }
     h->refusals++;
@@ -288,9 +288,9 @@ static bool can_ease(struct hold *h, const struct path *path, const struct lead 
 
 /*
  * How what follows this state ends: as it is known, or for what is tried first in another way, each cycle the next of them.
- * To stop it ends at rest, or where the lead point could go on, otherwise there. False: no way was found.
+ * To stop it ends at rest, or where the trapezoidal reference could go on, otherwise there. False: no way was found.
  */
-static bool find_ending(struct hold *h, const struct path *path, const struct lead *l,
+static bool find_ending(struct hold *h, const struct path *path, const struct reference *l,
                         const struct hold_trial *s, float hardest, bool stop, bool first,
                         struct hold_ending *ending)
 {
@@ -309,7 +309,7 @@ static bool find_ending(struct hold *h, const struct path *path, const struct le
 }
 
 /* Goes on by w if there is an ease behind it. In one direction in a cycle: the bounds need it. */
-static bool try_step(struct hold *h, const struct path *path, const struct lead *l, float w,
+static bool try_step(struct hold *h, const struct path *path, const struct reference *l, float w,
                      float hardest, bool stop, bool first)
 {
     const struct hold_trial here = {(float)h->place.at, (float)h->place.rate,
@@ -325,7 +325,7 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     advance(&place, by, 1.0);
     const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
-    if (next.rate > h->most || !hold_can_go(h, &here, &next, (float)by)) {
+    if (next.rate > h->most || !takt_hold_can_go(h, &here, &next, (float)by)) {
         return false;
     }
     if (!find_ending(h, path, l, &next, hardest, stop, first, &ending)) {
@@ -372,9 +372,9 @@ static void go_on_ending(struct hold *h)
  * True: it has gone on by a w of the direction wanted, or at the change it has. To rest in two cycles, one of w and one of
  * the ease that takes back all of the change: q + w = -2 (r + q + w/2).
  */
-static bool find_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
+static bool find_step(struct hold *h, const struct path *path, const struct reference *l, bool stop)
 {
-    const struct range w = hold_steps(h);
+    const struct range w = takt_hold_steps(h);
     const float wanted = stop ? single_min(w.low, 0.0f) : single_max(w.high, 0.0f);
     const float hardest = stop ? w.high : -w.low;
     const float rate = (float)h->place.rate;
@@ -399,19 +399,20 @@ static bool find_step(struct hold *h, const struct path *path, const struct lead
            try_step(h, path, l, -LESS_PART * change, hardest, stop, h->ending.ease == 0.0);
 }
 
-/* Does it have a change, or must it still brake: it may be too fast for the lead point. */
+/* Does it have a change, or must it still brake: it may be too fast for the trapezoidal reference. */
 static bool is_changing(const struct hold *h)
 {
     return h->place.change != 0.0 || h->ending.peak > 0.0;
 }
 
-/* Is it at the rate that the lead point may have here, or nearly? */
-static bool has_arrived(const struct hold *h, const struct path *path, const struct lead *l)
+/* Is it at the rate that the trapezoidal reference may have here, or nearly? */
+static bool has_arrived(const struct hold *h, const struct path *path, const struct reference *l)
 {
     const struct hold_trial faster = {.at = (float)h->place.at,
                                       .rate = (float)h->place.rate * (1.0f + ARRIVED_PART)};
 
-    return !is_changing(h) && h->place.rate > 0.0 && !lead_can_take(h, path, l, &faster, false);
+    return !is_changing(h) && h->place.rate > 0.0 &&
+           !reference_can_take(h, path, l, &faster, false);
 }
 
 /* Counts from the start of the block that the setpoint is in. */
@@ -423,7 +424,7 @@ static void pass_blocks(struct hold *h)
     }
 }
 
-bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
+bool takt_hold_step(struct hold *h, const struct path *path, const struct reference *l, bool stop)
 {
     read_pieces(h, path);
     h->clear = stop == h->stops ? h->clear : h->block;
@@ -464,8 +465,8 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
 }
 
 /* The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are as good as at rest. */
-bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
-                const double way[2], bool anew)
+bool takt_hold_begin(struct hold *h, const struct path *path, const struct reference *l, double at,
+                     const double way[2], bool anew)
 {
     look_ahead(h, path, anew);
     h->step = 1.0f;

@@ -13,7 +13,7 @@
 #ifndef TAKT_MOTION_HOLD_H
 #define TAKT_MOTION_HOLD_H
 
-#include "motion/lead.h"
+#include "motion/reference.h"
 #include "plan/path.h"
 
 #include <stdbool.h>
@@ -22,7 +22,7 @@
 /* Pieces of the curve that are looked at, from the setpoint's on. */
 #define HOLD_PIECES_MAX 24
 
-/* Of a piece of the curve, by axis: mm (rad) per piece and per piece^2. The second derivative is straight between its ends. */
+/* Derivatives of a piece, by axis: mm (rad) per piece and per piece^2. The second one is linear between its ends. */
 struct hold_piece {
     float first[AXIS_COUNT];
     float second[2][AXIS_COUNT];
@@ -60,7 +60,7 @@ struct hold {
     float most;        /* no higher does the rate get in coming to rest */
     float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
     unsigned turn;     /* counts cycles */
-    unsigned refusals; /* of the lead point, in this cycle */
+    unsigned refusals; /* of the trapezoidal reference, in this cycle */
     bool stops;        /* it was to stop in the last cycle */
     double top;        /* rate that the curve was made for, or more */
     struct hold_piece piece[HOLD_PIECES_MAX];
@@ -68,14 +68,14 @@ struct hold {
 
 /*
  * Can it take over in this cycle, and slow down? The setpoint is at a position of the path's first block, path units, and
- * has been moved by so many in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are read each
- * time, so that it may be able to in a later cycle.
+ * has been moved by these ways in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are
+ * read each time, so that it may be able to in a later cycle.
  */
-bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
-                const double way[2], bool anew);
+bool takt_hold_begin(struct hold *h, const struct path *path, const struct reference *l, double at,
+                     const double way[2], bool anew);
 
 /* One cycle: slows down as hard as it can, or speeds up. False: it cannot go on by itself; the rate is constant. */
-bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop);
+bool takt_hold_step(struct hold *h, const struct path *path, const struct reference *l, bool stop);
 
 /* Path units from the start of its block, and in a cycle. */
 static inline double hold_at(const struct hold *h)

@@ -109,8 +109,8 @@ static bool piece_can(const struct hold *h, uint32_t block, float f, float g, co
     return true;
 }
 
-bool hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
-                 float w)
+bool takt_hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
+                      float w)
 {
     const uint32_t first = (uint32_t)a->at;
     const uint32_t last = (uint32_t)b->at;
@@ -142,7 +142,7 @@ static struct range left_of(const struct hold *h, unsigned i, float x1, float x2
                           single_min(h->jerk[i] - j, h->acceleration[i] - a)};
 }
 
-/* Of w, what x' w in a range allows. */
+/* The part of the range of w that a range of x' w allows. */
 static struct range over(struct range left, float x1, struct range w)
 {
     const struct range by = x1 < 0.0f ? (struct range){-left.high, -left.low} : left;
@@ -152,7 +152,7 @@ static struct range over(struct range left, float x1, struct range w)
                           by.high < w.high * size ? by.high / size : w.high};
 }
 
-struct range hold_steps(const struct hold *h)
+struct range takt_hold_steps(const struct hold *h)
 {
     const struct hold_piece *p = hold_piece_at(h, h->block);
     const float f = (float)h->place.at;

@@ -29,10 +29,10 @@ static inline const struct hold_piece *hold_piece_at(const struct hold *h, uint3
 }
 
 /* Can it go from one state to another by w, on pieces that are known, and not back? In one direction of the change. */
-bool hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
-                 float w);
+bool takt_hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
+                      float w);
 
 /* w between which every axis keeps A and J where it is; limited where none moves. */
-struct range hold_steps(const struct hold *h);
+struct range takt_hold_steps(const struct hold *h);
 
 #endif

@@ -8,7 +8,7 @@
 /* Rounding of the deceleration that is solved for. */
 #define SLACK 1e-9
 
-bool landing_solve(const struct landing_case *l, struct landing_run *run)
+bool takt_landing_solve(const struct landing_case *l, struct landing_run *run)
 {
     const double w = l->feed;
 
@@ -17,7 +17,7 @@ bool landing_solve(const struct landing_case *l, struct landing_run *run)
     }
     const double top = maths_min(l->feed_max, w);
     const double n =
-        maths_max(1.0, maths_ceil((2.0 * l->gap_mm - top * (l->window + 1.0)) / (w + top)));
+        maths_max(1.0, takt_maths_ceil((2.0 * l->gap_mm - top * (l->window + 1.0)) / (w + top)));
     const double end = (2.0 * l->gap_mm - n * w) / (n + l->window + 1.0);
 
     if (!(n < RAMP_MAX) || !(end > 0.0) || w - end > n * l->acceleration * (1.0 + SLACK)) {
@@ -30,7 +30,7 @@ bool landing_solve(const struct landing_case *l, struct landing_run *run)
     return true;
 }
 
-double landing_distance(const struct landing_run *run, uint32_t cycle, double *feed)
+double takt_landing_distance(const struct landing_run *run, uint32_t cycle, double *feed)
 {
     const double n = (double)run->ramp;
     const double i = maths_min((double)cycle, n);

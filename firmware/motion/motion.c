@@ -10,16 +10,17 @@
 #include <assert.h>
 #include <string.h>
 
-/* A setpoint this close to a joint that it lands on in motion is on it: rounding of the lead point's positions, path units. */
+/* A setpoint this close to a junction that it lands on in motion is on it: rounding of the trapezoidal reference's positions, path units. */
 #define LANDED_UNITS 8.0
 
-/* A ceiling that had no room for all blocks is made anew when the lead point has gone this part of its length. */
+/* A ceiling that had no room for all blocks is made anew when the trapezoidal reference has gone this part of its length. */
 #define RENEW_PART 0.25
 
 /* Waits without a cycle, and blocks, that one cycle passes at most. */
 #define PASS_MAX 64
 
-void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional)
+void takt_motion_init(struct motion *m, struct path *path, const struct point *start,
+                      bool proportional)
 {
     memset(m, 0, sizeof(*m));
     m->path = path;
@@ -27,12 +28,12 @@ void motion_init(struct motion *m, struct path *path, const struct point *start,
     m->at = *start;
     m->setpoint = path->position;
     m->proportional = proportional;
-    lead_init(&m->lead, path->limits.law, path->position);
-    average_start(&m->mover.average, path->limits.law, 1, path->position, 0);
+    takt_reference_init(&m->reference, path->limits.profile, path->position);
+    takt_average_start(&m->mover.average, path->limits.profile, 1, path->position, 0);
     m->rested = 1;
     m->wanted = true;
-    m->request = (struct ceiling_request){.lead = m->lead.at,
-                                          .span = m->lead.span,
+    m->request = (struct ceiling_request){.reference = m->reference.at,
+                                          .span = m->reference.span,
                                           .cycles = 1,
                                           .feed_ratio = 1.0,
                                           .rapid_ratio = 1.0,
@@ -53,7 +54,7 @@ static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
     return path_ceiling(m->path, which);
 }
 
-const struct ceiling_request *motion_wanted(struct motion *m)
+const struct ceiling_request *takt_motion_wanted(struct motion *m)
 {
     const bool wanted = handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built);
 
@@ -61,13 +62,13 @@ const struct ceiling_request *motion_wanted(struct motion *m)
     return wanted ? &m->request : NULL;
 }
 
-uint32_t motion_ahead(struct motion *m)
+uint32_t takt_motion_ahead(struct motion *m)
 {
     if ((int32_t)(m->request.first - m->ahead) > 0) {
         m->ahead = m->request.first;
     }
     while (m->ahead != m->path->closed) {
-        if ((int64_t)(path_end(m->path, m->ahead) - m->request.lead) > 0) {
+        if ((int64_t)(path_end(m->path, m->ahead) - m->request.reference) > 0) {
             break;
         }
         m->ahead++;
@@ -89,13 +90,13 @@ static struct ceiling_request take_request(const struct motion *m, uint32_t *res
     return request;
 }
 
-/* Over all blocks, or as far as there was room and the lead point has not come near the end of that. */
-static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t lead)
+/* Over all blocks, or as far as there was room and the trapezoidal reference has not come near the end of that. */
+static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t reference)
 {
     if (c->complete) {
         return m->made_closed == m->path->closed;
     }
-    return path_mm(c->origin, lead) < RENEW_PART * c->end_mm[c->count - 1];
+    return path_mm(c->origin, reference) < RENEW_PART * c->end_mm[c->count - 1];
 }
 
 /* Would a new ceiling be the one that is there? */
@@ -103,13 +104,13 @@ static bool is_unchanged(const struct motion *m, const struct ceiling_request *r
 {
     const struct ceiling *c = ceiling_of(m, m->active);
 
-    return m->made_holds && reaches_far(m, c, request->lead) &&
+    return m->made_holds && reaches_far(m, c, request->reference) &&
            m->made.feed_ratio == request->feed_ratio &&
            m->made.rapid_ratio == request->rapid_ratio &&
            m->made.spindle_rev_s == request->spindle_rev_s;
 }
 
-void motion_build(struct motion *m)
+void takt_motion_build(struct motion *m)
 {
     uint32_t restarts;
     const struct ceiling_request request = take_request(m, &restarts);
@@ -120,7 +121,7 @@ void motion_build(struct motion *m)
         return;
     }
     m->built_restarts = restarts;
-    ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
+    takt_ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
     m->made = request;
     m->made_closed = m->path->closed;
     m->made_holds = true;
@@ -139,36 +140,36 @@ static void offer_ceiling(struct motion *m)
     if (m->made_holds) {
         m->active = 1 - m->active;
         m->has_ceiling = true;
-        lead_set_ceiling(&m->lead, ceiling_of(m, m->active));
+        takt_reference_set_ceiling(&m->reference, ceiling_of(m, m->active));
     }
     handoff_set_flag(&m->wanted, false);
     handoff_set_flag(&m->built, false);
 }
 
-void motion_prepare(struct motion *m)
+void takt_motion_prepare(struct motion *m)
 {
     if (!m->has_ceiling && m->built) {
         offer_ceiling(m);
     }
-    (void)lead_take(&m->lead);
+    (void)reference_take(&m->reference);
 }
 
-/* Where the ceiling ends that the lead point is under. */
+/* Where the ceiling ends that the trapezoidal reference is under. */
 static uint64_t piece_leave(const struct motion *m)
 {
-    const struct lead_place *here = &m->lead.here;
+    const struct reference_place *here = &m->reference.here;
 
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
-        return m->lead.at;
+        return m->reference.at;
     }
-    return ceiling_leave(here->ceiling, here->piece);
+    return takt_ceiling_leave(here->ceiling, here->piece);
 }
 
-/* An override asked for while the lead point brakes waits for the next block (seed 003 section 2). 0 is a hold. */
+/* An override asked for while the trapezoidal reference brakes waits for the next block (seed 003 section 2). 0 is a hold. */
 static void ask(struct motion *m, const struct motion_operator *wanted)
 {
     const uint64_t leave = piece_leave(m);
-    const bool braking = m->lead.feed > 0.0 && m->lead.since_minus == 0;
+    const bool braking = m->reference.feed > 0.0 && m->reference.since_minus == 0;
 
     if (!braking || leave != m->asked_leave) {
         m->request.feed_ratio =
@@ -182,18 +183,18 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->asked_leave = leave;
     m->asked_restarts = m->restarts;
     m->request.first = m->path->first;
-    m->request.lead = m->lead.at;
-    m->request.span = m->lead.span;
-    m->request.cycles = m->lead.cycles;
+    m->request.reference = m->reference.at;
+    m->request.span = m->reference.span;
+    m->request.cycles = m->reference.cycles;
     m->asked++;
     handoff_set_count(&m->path->kept, m->path->first);
     handoff_set_flag(&m->wanted, true);
 }
 
-/* The lead point has not taken the last ceiling: that is free, and another one is needed. */
+/* The trapezoidal reference has not taken the last ceiling: that is free, and another one is needed. */
 static void note_refused(struct motion *m)
 {
-    if (m->lead.here.ceiling == path_ceiling(m->path, 1 - m->active)) {
+    if (m->reference.here.ceiling == path_ceiling(m->path, 1 - m->active)) {
         m->active = 1 - m->active;
         m->made_holds = false;
     }
@@ -210,8 +211,8 @@ static void exchange(struct motion *m, const struct motion_operator *wanted)
         }
         m->asks = true;
     }
-    m->busy = m->busy || m->lead.coming.ceiling != NULL;
-    if (lead_take(&m->lead)) {
+    m->busy = m->busy || m->reference.coming.ceiling != NULL;
+    if (reference_take(&m->reference)) {
         return;
     }
     note_refused(m);
@@ -232,7 +233,7 @@ static bool waits_for_tool(const struct motion *m, enum move_kind kind, bool too
 static bool is_wait_over(const struct motion *m, enum move_kind kind)
 {
     return kind != MOVE_DWELL ||
-           (double)m->waited >= maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
+           (double)m->waited >= takt_maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
 }
 
 static bool turns_rotary(const struct block *b)
@@ -247,7 +248,7 @@ static bool turns_rotary(const struct block *b)
 
 static bool is_handed_over(const struct motion *m, const struct block *b)
 {
-    return (m->hands_over && move_is_locked(&b->move)) ||
+    return (m->hands_over && move_is_synchronized(&b->move)) ||
            (m->hands_over_all && b->move.kind != MOVE_PROBE &&
             !(m->keeps_rotary && turns_rotary(b)));
 }
@@ -267,7 +268,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
     }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
         if (m->done) {
-            path_pass(m->path);
+            takt_path_pass(m->path);
             m->done = false;
         }
         if (m->path->first == m->path->closed) {
@@ -279,7 +280,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
             *block = first_block(m);
             return is_handed_over(m, *block) ? MOTION_HANDED_OVER : MOTION_CYCLE;
         }
-        const enum move_kind kind = path_kind(m->path, m->current);
+        const enum move_kind kind = takt_path_kind(m->path, m->current);
 
         if (kind == MOVE_END) {
             return MOTION_DONE;
@@ -298,10 +299,10 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
 
 /* -- one setpoint -- */
 
-/* Does the operator hold where the lead point is? */
+/* Does the operator hold where the trapezoidal reference is? */
 static bool is_held(const struct motion *m, const struct motion_operator *wanted)
 {
-    const struct lead_place *here = &m->lead.here;
+    const struct reference_place *here = &m->reference.here;
     const bool stands =
         m->path->has_revolution_feed && wanted->measures && !(wanted->spindle_rev_s > 0.0);
     const unsigned holds =
@@ -317,19 +318,19 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return wanted->hold;
     }
-    return (ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
+    return (takt_ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
 }
 
 /* Is the end of the oldest block a stop? */
 static bool ends_at_rest(const struct motion *m)
 {
-    return span_stops(m->path, m->path->first);
+    return takt_span_stops(m->path, m->path->first);
 }
 
-/* Does the setpoint fall on the joint behind the oldest block in motion, but for rounding? At rest it is there exactly. */
+/* Does the setpoint fall on the junction behind the oldest block in motion, but for rounding? At rest it is there exactly. */
 static bool lands(const struct motion *m)
 {
-    return span_lands(m->path, m->path->first);
+    return takt_span_lands(m->path, m->path->first);
 }
 
 /*
@@ -340,7 +341,7 @@ static double find_block(struct motion *m, const struct block *b, double *length
 {
     uint64_t start = b->start;
     uint64_t end = start + b->length;
-    double local = (double)(int64_t)(m->lead.at - start) - m->lag;
+    double local = (double)(int64_t)(m->reference.at - start) - m->lag;
 
     *length = (double)b->length;
     for (unsigned passed = 0; local > *length; passed++) {
@@ -348,7 +349,7 @@ static double find_block(struct motion *m, const struct block *b, double *length
             (local <= *length + LANDED_UNITS && lands(m))) {
             break;
         }
-        path_pass(m->path);
+        takt_path_pass(m->path);
         local -= *length;
         start = end;
         end = path_end(m->path, m->path->first);
@@ -359,10 +360,10 @@ static double find_block(struct motion *m, const struct block *b, double *length
     return local;
 }
 
-/* Has the setpoint come to where the lead point halts? */
+/* Has the setpoint come to where the trapezoidal reference halts? */
 static bool is_halted(const struct motion *m)
 {
-    return lead_has_halted(&m->lead) && m->lag == 0.0;
+    return takt_reference_has_halted(&m->reference) && m->lag == 0.0;
 }
 
 static void place(struct motion *m, const struct block *b, double local, double length,
@@ -372,19 +373,19 @@ static void place(struct motion *m, const struct block *b, double local, double 
         return;
     }
     if (maths_abs(local - length) <= LANDED_UNITS && (local == length || lands(m))) {
-        m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
+        m->done = ends_at_rest(m) && m->reference.standing && m->lag == 0.0;
         m->rested = 0;
         record->landed =
-            (m->done || is_halted(m) || span_lands(m->path, m->current)) && !b->continues;
+            (m->done || is_halted(m) || takt_span_lands(m->path, m->current)) && !b->continues;
         m->at = b->curve.end;
         return;
     }
     const double s_mm = local / PATH_UNITS_PER_MM * b->scale;
 
-    curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
+    takt_curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
 }
 
-/* Of the way from one setpoint to the next, of A, B, C where they are alone. */
+/* Feed on the way from one setpoint to the next, of A, B, C where they are alone. */
 static double feed_between(const struct motion *m, const struct block *b, const struct point *from)
 {
     const int first = b->rotary ? AXIS_LINEAR_COUNT : 0;
@@ -399,23 +400,24 @@ static double feed_between(const struct motion *m, const struct block *b, const 
     return (double)(single_sqrt(square) / (float)m->cycle_s);
 }
 
-/* The lead point moves and its average with it. */
-static void move_lead(struct motion *m, bool hold)
+/* The trapezoidal reference moves and its average with it. */
+static void move_reference(struct motion *m, bool hold)
 {
-    if (held_move(m, hold)) {
+    if (takt_held_move(m, hold)) {
         return;
     }
-    struct lead_start start = {.at = m->lead.at};
+    struct reference_start start = {.at = m->reference.at};
     double lag = m->lag;
 
-    if (lead_step(&m->lead, m->setpoint, hold, &start)) {
-        average_start(&m->mover.average, m->path->limits.law, m->lead.cycles, start.at, start.step);
+    if (takt_reference_step(&m->reference, m->setpoint, hold, &start)) {
+        takt_average_start(&m->mover.average, m->path->limits.profile, m->reference.cycles,
+                           start.at, start.step);
         lag = average_lag(&m->mover.average);
         m->busy = true;
     }
-    average_push(&m->mover.average, m->lead.at);
+    takt_average_push(&m->mover.average, m->reference.at);
     m->lag = average_lag(&m->mover.average);
-    m->feed = path_mm(start.at, m->lead.at) - (m->lag - lag) / PATH_UNITS_PER_MM;
+    m->feed = path_mm(start.at, m->reference.at) - (m->lag - lag) / PATH_UNITS_PER_MM;
 }
 
 /*
@@ -424,11 +426,11 @@ static void move_lead(struct motion *m, bool hold)
  */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
-    return m->lead.standing && m->lead.at == first_block(m)->start && m->rested > 0 &&
+    return m->reference.standing && m->reference.at == first_block(m)->start && m->rested > 0 &&
            m->passed_first == m->path->first && !wanted->wait;
 }
 
-/* The lead point, its average, the path there, from block b on. Returns the block it leads to. */
+/* The trapezoidal reference, its average, the path there, from block b on. Returns the block it leads to. */
 static const struct block *move_on(struct motion *m, const struct motion_operator *wanted,
                                    const struct block *b, struct cycle_record *record)
 {
@@ -436,16 +438,16 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     double length;
 
     if (may_leave(m, wanted)) {
-        lead_release(&m->lead);
+        takt_reference_release(&m->reference);
     }
     if (is_halted(m)) {
-        lead_leave_halt(&m->lead);
+        takt_reference_leave_halt(&m->reference);
     }
-    if (m->lead.halt.on != wanted->single_block) {
-        lead_end_blocks(&m->lead, wanted->single_block);
+    if (m->reference.halt.on != wanted->single_block) {
+        takt_reference_end_blocks(&m->reference, wanted->single_block);
     }
     m->rested++;
-    move_lead(m, is_held(m, wanted));
+    move_reference(m, is_held(m, wanted));
 
     const double local = find_block(m, b, &length);
 
@@ -478,13 +480,13 @@ static void watch(struct motion *m, const struct motion_operator *wanted, const 
         return;
     }
     m->busy = true;
-    if (!watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
+    if (!takt_watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
         m->watch.line = b->move.line;
         m->ending = true;
     }
 }
 
-uint32_t motion_stalled_line(const struct motion *m)
+uint32_t takt_motion_stalled_line(const struct motion *m)
 {
     return m->watch.line;
 }
@@ -492,18 +494,18 @@ uint32_t motion_stalled_line(const struct motion *m)
 /* At rest: what is left of the path is dropped; false: it has stalled, and nothing follows. */
 static bool end_path(struct motion *m)
 {
-    if (m->lead.feed > 0.0 || m->lag != 0.0) {
+    if (m->reference.feed > 0.0 || m->lag != 0.0) {
         return true;
     }
     if (m->watch.line != 0) {
         return m->feed != 0.0;
     }
     if (m->holds) {
-        held_end(m);
+        takt_held_end(m);
     }
-    path_restart(m->path, &m->at, m->lead.at);
-    lead_init(&m->lead, m->path->limits.law, m->lead.at);
-    m->setpoint = m->lead.at;
+    takt_path_restart(m->path, &m->at, m->reference.at);
+    takt_reference_init(&m->reference, m->path->limits.profile, m->reference.at);
+    m->setpoint = m->reference.at;
     m->rested = 0;
     m->done = false;
     m->ending = false;
@@ -511,17 +513,17 @@ static bool end_path(struct motion *m)
     return true;
 }
 
-void motion_end_here(struct motion *m)
+void takt_motion_end_here(struct motion *m)
 {
     m->ending = true;
 }
 
-bool motion_rests(const struct motion *m)
+bool takt_motion_rests(const struct motion *m)
 {
     return m->done || m->feed == 0.0 || is_halted(m);
 }
 
-bool motion_is_idle(const struct motion *m)
+bool takt_motion_is_idle(const struct motion *m)
 {
     return m->path->first == m->path->pushed && !m->ending;
 }
@@ -547,8 +549,8 @@ static void read_ahead(struct motion *m)
     }
 }
 
-enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
-                                struct cycle_record *record)
+enum motion_result takt_motion_cycle(struct motion *m, const struct motion_operator *wanted,
+                                     struct cycle_record *record)
 {
     const struct block *b;
 

@@ -1,10 +1,10 @@
 /*
  * The control cycle: the path ahead and its feed ceiling in, one setpoint of every axis out, once a cycle.
  *
- *     lead point (lead.h) -> average (average.h) -> position on the path -> curve -> setpoint
+ *     trapezoidal reference (reference.h) -> average (average.h) -> position on the path -> curve -> setpoint
  *
- * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer so many cycles later, so that every
- * build makes the same setpoints as long as its background is not later than that.
+ * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer that many cycles later, so that
+ * every build makes the same setpoints as long as its background is not later than that.
  */
 #ifndef TAKT_MOTION_MOTION_H
 #define TAKT_MOTION_MOTION_H
@@ -12,7 +12,7 @@
 #include "motion/average.h"
 #include "motion/cycle_record.h"
 #include "motion/hold.h"
-#include "motion/lead.h"
+#include "motion/reference.h"
 #include "motion/watch.h"
 #include "plan/ceiling.h"
 #include "plan/path.h"
@@ -62,22 +62,22 @@ struct motion {
     uint64_t setpoint;     /* where that is on the path, rounded down */
     double feed;           /* mm/cycle, of the setpoint */
     double feed_before[2]; /* likewise, in the two cycles before */
-    double lag;            /* of the setpoint behind the lead point, path units */
+    double lag;            /* of the setpoint behind the trapezoidal reference, path units */
     bool proportional;
-    bool holds;        /* the setpoint is moved by the hold, not by the lead point, */
+    bool holds;        /* the setpoint is moved by the hold, not by the trapezoidal reference, */
     bool looks;        /* or looks whether it can be */
     bool done;         /* the oldest block: the next cycle passes it */
     bool changes_tool; /* this cycle stands at a tool change that is not passed */
     bool
         busy; /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
     uint32_t current; /* the block of the last cycle */
-    uint32_t ahead;   /* the block of the lead point, when a ceiling was asked for */
+    uint32_t ahead;   /* the block of the trapezoidal reference, when a ceiling was asked for */
     uint64_t rested;  /* cycles at rest since the last stop was landed on */
     uint64_t waited;  /* cycles of the wait that is being executed */
     uint32_t
         passed_first; /* the path's first before this cycle: blocks from there to first were passed in it */
     uint64_t late; /* exchanges for which no ceiling was ready */
-    struct lead lead;
+    struct reference reference;
     union {
         struct average average;
         struct motion_beside beside; /* where a span's window is short */
@@ -89,7 +89,7 @@ struct motion {
     bool wanted;      /* it has been asked, and has not answered that it needs no other */
     bool built;       /* and has made it */
     struct ceiling_request request;
-    uint64_t asked_leave;        /* of the piece the lead point was in then */
+    uint64_t asked_leave;        /* of the piece the trapezoidal reference was in then */
     struct ceiling_request made; /* what the last ceiling was made for, and of how many blocks */
     uint32_t made_closed;
     bool made_holds;   /* and it is the one in use */
@@ -104,36 +104,37 @@ struct motion {
 };
 
 /* start: where the machine stands. The path is read here, and passed; it must outlive m. */
-void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional);
+void takt_motion_init(struct motion *m, struct path *path, const struct point *start,
+                      bool proportional);
 
 /* Background: what a ceiling is asked for; NULL: none is. Until it has been made the path may smooth motions. */
-const struct ceiling_request *motion_wanted(struct motion *m);
-/* Background: makes it, from all blocks pushed so far. Needs motion_wanted. */
-void motion_build(struct motion *m);
-/* Background: blocks that the path has beyond the lead point's, as that was when a ceiling was asked for. */
-uint32_t motion_ahead(struct motion *m);
+const struct ceiling_request *takt_motion_wanted(struct motion *m);
+/* Background: makes it, from all blocks pushed so far. Needs takt_motion_wanted. */
+void takt_motion_build(struct motion *m);
+/* Background: blocks that the path has beyond the trapezoidal reference's, as that was when a ceiling was asked for. */
+uint32_t takt_motion_ahead(struct motion *m);
 
 /* In a control cycle before the first of them: takes the first ceiling, if it is there, so that the first need not. */
-void motion_prepare(struct motion *m);
+void takt_motion_prepare(struct motion *m);
 
 /* One control cycle. Fills everything of the record but set, act and spindle_rev. */
-enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
-                                struct cycle_record *record);
+enum motion_result takt_motion_cycle(struct motion *m, const struct motion_operator *wanted,
+                                     struct cycle_record *record);
 
 /*
  * The move that is executed ends where the axes come to rest from now on; all other blocks of the path are dropped. The
  * path goes on from there.
  */
-void motion_end_here(struct motion *m);
+void takt_motion_end_here(struct motion *m);
 
 /* Did the setpoint stand at the end of the last cycle? */
-bool motion_rests(const struct motion *m);
+bool takt_motion_rests(const struct motion *m);
 
 /* Where the path is not gone on along: line of the program. After MOTION_STALLED. */
-uint32_t motion_stalled_line(const struct motion *m);
+uint32_t takt_motion_stalled_line(const struct motion *m);
 
 /* Has everything on the path been done? */
-bool motion_is_idle(const struct motion *m);
+bool takt_motion_is_idle(const struct motion *m);
 
 /* The block the last cycle executed. Valid until the next cycle. */
 static inline const struct block *motion_block(const struct motion *m)

@@ -3,8 +3,8 @@
 #include "motion/motion.h"
 #include "plan/path_unit.h"
 
-/* Is something known ahead of the lead point, in the ceiling that it is in? */
-static bool has_way(const struct lead *l)
+/* Is something known ahead of the trapezoidal reference, in the ceiling that it is in? */
+static bool has_way(const struct reference *l)
 {
     const struct ceiling *c = l->here.ceiling;
 
@@ -14,19 +14,20 @@ static bool has_way(const struct lead *l)
 static double explained_cycles(const struct motion *m)
 {
     const uint32_t index = m->path->first;
-    const uint32_t cycles = m->lead.standing ? path_at(m->path, index)->cycles : m->lead.cycles;
-    const double feed = ceiling_block_feed(m->path, index, &m->request) * m->cycle_s;
-    const double a = ceiling_block_acceleration(m->path, index, cycles);
+    const uint32_t cycles =
+        m->reference.standing ? path_at(m->path, index)->cycles : m->reference.cycles;
+    const double feed = takt_ceiling_block_feed(m->path, index, &m->request) * m->cycle_s;
+    const double a = takt_ceiling_block_acceleration(m->path, index, cycles);
 
-    return path_length(m->path, index) / feed + 2.0 * feed / a + 4.0 * m->lead.window +
+    return takt_path_length(m->path, index) / feed + 2.0 * feed / a + 4.0 * m->reference.window +
            WATCH_EVERY_CYCLES;
 }
 
-bool watch_look(struct motion *m, bool may_move)
+bool takt_watch_look(struct motion *m, bool may_move)
 {
     struct watch *w = &m->watch;
 
-    if (!may_move || !has_way(&m->lead) || w->block != m->path->first) {
+    if (!may_move || !has_way(&m->reference) || w->block != m->path->first) {
         w->block = m->path->first;
         w->parts = 0.0F;
         return true;

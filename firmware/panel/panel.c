@@ -4,18 +4,18 @@
 
 #include <string.h>
 
-void panel_init(struct panel *panel, const struct panel_config *config)
+void takt_panel_init(struct panel *panel, const struct panel_config *config)
 {
     memset(panel, 0, sizeof *panel);
     panel->config = *config;
 }
 
-void panel_client_enter(struct panel_client *client, struct panel *panel)
+void takt_panel_client_enter(struct panel_client *client, struct panel *panel)
 {
     *client = (struct panel_client){.panel = panel};
 }
 
-void panel_client_leave(struct panel_client *client)
+void takt_panel_client_leave(struct panel_client *client)
 {
     struct panel *panel = client->panel;
 
@@ -24,19 +24,20 @@ void panel_client_leave(struct panel_client *client)
         panel->owner = NULL;
 }
 
-struct modbus_map panel_client_map(struct panel_client *client)
+struct modbus_map takt_panel_client_map(struct panel_client *client)
 {
-    return (struct modbus_map){.read = panel_read, .write = panel_write, .context = client};
+    return (struct modbus_map){
+        .read = takt_panel_read, .write = takt_panel_write, .context = client};
 }
 
-void panel_look(struct panel *panel, struct panel_snapshot *snapshot)
+void takt_panel_look(struct panel *panel, struct panel_snapshot *snapshot)
 {
     panel->config.port.look(panel->config.port.context, snapshot);
     if (snapshot->value[REGISTER_WATCHDOG] == 0)
         panel->owner = NULL;
 }
 
-const struct panel_store *panel_get_store(const struct panel *panel)
+const struct panel_store *takt_panel_get_store(const struct panel *panel)
 {
     switch (panel->kind) {
     case PANEL_UPLOAD_SETTINGS:
@@ -69,7 +70,8 @@ static void add_own(struct panel_client *client, struct panel_snapshot *snapshot
     value[REGISTER_CONTROL] = control_of(client, snapshot);
     value[REGISTER_UPLOAD_STATE] = panel->upload.state;
     value[REGISTER_UPLOAD_RECEIVED] = panel->upload.received;
-    value[REGISTER_UPLOAD_ROOM] = panel_upload_room(&panel->upload, panel_get_store(panel));
+    value[REGISTER_UPLOAD_ROOM] =
+        takt_panel_upload_room(&panel->upload, takt_panel_get_store(panel));
     value[REGISTER_PROGRAM_MAX] = PANEL_PROGRAM_BYTES_MAX;
     value[REGISTER_UPLOAD_KIND] = mailbox->upload_kind;
     value[REGISTER_UPLOAD_SIZE] = mailbox->upload_size;
@@ -100,7 +102,7 @@ static uint16_t word_of_bytes(const struct panel *panel, const struct panel_snap
 static uint16_t word_of_row(const struct panel *panel, const struct panel_snapshot *snapshot,
                             enum panel_id id, unsigned index)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     const uint32_t bits = snapshot->value[id];
 
     if (row->form == PANEL_TEXT || row->form == PANEL_BYTES)
@@ -124,25 +126,26 @@ static void sign_of_life(const struct panel_client *client)
         port->alive(port->context);
 }
 
-enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_t address,
-                                 uint16_t count, uint8_t *data)
+enum modbus_exception takt_panel_read(void *context, enum modbus_table table, uint16_t address,
+                                      uint16_t count, uint8_t *data)
 {
     struct panel_client *client = context;
     struct panel_snapshot snapshot;
 
-    panel_look(client->panel, &snapshot);
+    takt_panel_look(client->panel, &snapshot);
     add_own(client, &snapshot);
     sign_of_life(client);
     if (table == MODBUS_COILS)
         memset(data, 0, ((size_t)count + 7) / 8);
     for (unsigned i = 0; i < count; i++) {
         const uint16_t here = (uint16_t)(address + i);
-        const enum panel_id id = panel_find(table, here);
+        const enum panel_id id = takt_panel_find(table, here);
         uint16_t word = 0;
 
         if (id != REGISTER_COUNT)
-            word = word_of_row(client->panel, &snapshot, id, here - panel_registers[id].address);
-        else if (!panel_is_gap(table, here))
+            word =
+                word_of_row(client->panel, &snapshot, id, here - takt_panel_registers[id].address);
+        else if (!takt_panel_is_gap(table, here))
             return MODBUS_ADDRESS;
         put_value(data, table, i, word);
     }

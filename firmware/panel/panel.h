@@ -49,20 +49,21 @@ struct panel_client {
     enum panel_refusal refusal;
 };
 
-void panel_init(struct panel *panel, const struct panel_config *config);
+void takt_panel_init(struct panel *panel, const struct panel_config *config);
 
 /* A client has come; it stays at its address until it leaves. */
-void panel_client_enter(struct panel_client *client, struct panel *panel);
+void takt_panel_client_enter(struct panel_client *client, struct panel *panel);
 /* Control that it has claimed is left to the watchdog. */
-void panel_client_leave(struct panel_client *client);
+void takt_panel_client_leave(struct panel_client *client);
 
 /* An order as this client's, by the rules of a write. PANEL_REFUSAL_NONE: it is done. */
-enum panel_refusal panel_client_order(struct panel_client *client, const struct panel_order *order);
+enum panel_refusal takt_panel_client_order(struct panel_client *client,
+                                           const struct panel_order *order);
 
 /* The client writes PASSWORD. */
-enum panel_refusal panel_client_unlock(struct panel_client *client, uint32_t password);
+enum panel_refusal takt_panel_client_unlock(struct panel_client *client, uint32_t password);
 
 /* The registers as this client sees them. */
-struct modbus_map panel_client_map(struct panel_client *client);
+struct modbus_map takt_panel_client_map(struct panel_client *client);
 
 #endif

@@ -7,26 +7,27 @@
 #include "panel/panel.h"
 
 /* For struct modbus_map. */
-enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_t address,
-                                 uint16_t count, uint8_t *data);
-enum modbus_exception panel_write(void *context, enum modbus_table table, uint16_t address,
-                                  uint16_t count, const uint8_t *data);
+enum modbus_exception takt_panel_read(void *context, enum modbus_table table, uint16_t address,
+                                      uint16_t count, uint8_t *data);
+enum modbus_exception takt_panel_write(void *context, enum modbus_table table, uint16_t address,
+                                       uint16_t count, const uint8_t *data);
 
 /* Where the upload that is under way goes. */
-const struct panel_store *panel_get_store(const struct panel *panel);
+const struct panel_store *takt_panel_get_store(const struct panel *panel);
 
 /* An upload of another kind is given up. */
-void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind);
+void takt_panel_turn_upload(struct panel *panel, enum panel_upload_kind kind);
 
 /* The reason, as the store of this kind has it, for UPLOAD_TEXT. Returns the refusal. */
-enum panel_refusal panel_tell_why(struct panel *panel, enum panel_refusal refusal);
+enum panel_refusal takt_panel_tell_why(struct panel *panel, enum panel_refusal refusal);
 
 /* Settings: refused with a reason for UPLOAD_TEXT. */
-enum panel_refusal panel_begin_settings(struct panel *panel, const struct panel_mailbox *mailbox);
-enum panel_refusal panel_commit_settings(struct panel *panel);
+enum panel_refusal takt_panel_begin_settings(struct panel *panel,
+                                             const struct panel_mailbox *mailbox);
+enum panel_refusal takt_panel_commit_settings(struct panel *panel);
 
 /* A snapshot; control that the watchdog has taken from its owner is free again. */
-void panel_look(struct panel *panel, struct panel_snapshot *snapshot);
+void takt_panel_look(struct panel *panel, struct panel_snapshot *snapshot);
 
 /* One write request on its way: everything is found out before anything is done. */
 struct panel_request {

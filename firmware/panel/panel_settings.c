@@ -3,17 +3,17 @@
 
 #include <string.h>
 
-void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind)
+void takt_panel_turn_upload(struct panel *panel, enum panel_upload_kind kind)
 {
     if (panel->kind == kind)
         return;
-    panel_upload_abandon(&panel->upload, panel_get_store(panel));
+    takt_panel_upload_abandon(&panel->upload, takt_panel_get_store(panel));
     panel->kind = kind;
 }
 
-enum panel_refusal panel_tell_why(struct panel *panel, enum panel_refusal refusal)
+enum panel_refusal takt_panel_tell_why(struct panel *panel, enum panel_refusal refusal)
 {
-    const struct panel_store *store = panel_get_store(panel);
+    const struct panel_store *store = takt_panel_get_store(panel);
 
     memset(panel->upload_text, 0, sizeof panel->upload_text);
     if (store->why != NULL)
@@ -21,29 +21,30 @@ enum panel_refusal panel_tell_why(struct panel *panel, enum panel_refusal refusa
     return refusal;
 }
 
-enum panel_refusal panel_begin_settings(struct panel *panel, const struct panel_mailbox *mailbox)
+enum panel_refusal takt_panel_begin_settings(struct panel *panel,
+                                             const struct panel_mailbox *mailbox)
 {
     const struct panel_store *store = &panel->config.settings;
 
     if (store->begin == NULL || mailbox->upload_size == 0)
         return PANEL_REFUSAL_VALUE;
-    if (!panel_upload_begin(&panel->upload, store, mailbox->upload_size, mailbox->upload_crc))
-        return panel_tell_why(panel, PANEL_REFUSAL_STATE);
+    if (!takt_panel_upload_begin(&panel->upload, store, mailbox->upload_size, mailbox->upload_crc))
+        return takt_panel_tell_why(panel, PANEL_REFUSAL_STATE);
     memset(panel->upload_text, 0, sizeof panel->upload_text);
     return PANEL_REFUSAL_NONE;
 }
 
 /* They are looked at as a whole before they replace those that are there; no order is needed: they count later. */
-enum panel_refusal panel_commit_settings(struct panel *panel)
+enum panel_refusal takt_panel_commit_settings(struct panel *panel)
 {
     const struct panel_store *store = &panel->config.settings;
     bool good;
 
     if (panel->upload.state != PANEL_UPLOAD_WHOLE)
         return PANEL_REFUSAL_STATE;
-    if (!panel_upload_is_right(&panel->upload))
+    if (!takt_panel_upload_is_right(&panel->upload))
         return PANEL_REFUSAL_VALUE;
     good = store->prepare(store->context) && store->place(store->context);
-    panel_upload_abandon(&panel->upload, store);
-    return good ? PANEL_REFUSAL_NONE : panel_tell_why(panel, PANEL_REFUSAL_VALUE);
+    takt_panel_upload_abandon(&panel->upload, store);
+    return good ? PANEL_REFUSAL_NONE : takt_panel_tell_why(panel, PANEL_REFUSAL_VALUE);
 }

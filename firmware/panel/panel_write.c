@@ -77,8 +77,8 @@ static enum modbus_exception take_row(struct panel_request *r, const struct writ
                                       unsigned *at)
 {
     const uint16_t here = (uint16_t)(w->address + *at);
-    const enum panel_id id = panel_find(w->table, here);
-    const struct panel_register *row = &panel_registers[id == REGISTER_COUNT ? 0 : id];
+    const enum panel_id id = takt_panel_find(w->table, here);
+    const struct panel_register *row = &takt_panel_registers[id == REGISTER_COUNT ? 0 : id];
     const unsigned from = (unsigned)(here - row->address);
     unsigned words = row->words - from;
 
@@ -92,7 +92,7 @@ static enum modbus_exception take_row(struct panel_request *r, const struct writ
         const int64_t value = words == row->words ? decode(row, w->data, *at) : -1;
 
         /* Half a number is none. */
-        if (words != row->words || value < panel_least(row) || value > panel_most(row))
+        if (words != row->words || value < takt_panel_least(row) || value > panel_most(row))
             return MODBUS_VALUE;
         take_number(r, id, value);
     }
@@ -197,8 +197,9 @@ static enum panel_refusal check_states(const struct panel_request *r)
     for (unsigned i = 0; i < r->order.count; i++) {
         const struct panel_order_item *item = &r->order.item[i];
 
-        if (!panel_may_write(item->id, r->state) && (panel_registers[item->id].form != PANEL_BIT ||
-                                                     item->value != 0 || is_switch(item->id)))
+        if (!takt_panel_may_write(item->id, r->state) &&
+            (takt_panel_registers[item->id].form != PANEL_BIT || item->value != 0 ||
+             is_switch(item->id)))
             return PANEL_REFUSAL_STATE;
     }
     return PANEL_REFUSAL_NONE;
@@ -252,14 +253,15 @@ static enum panel_refusal begin_plan(struct panel_request *r)
 
     if (store->begin_stream == NULL || r->mailbox.upload_size == 0)
         return PANEL_REFUSAL_VALUE;
-    panel_upload_abandon(&panel->upload, panel_get_store(panel));
+    takt_panel_upload_abandon(&panel->upload, takt_panel_get_store(panel));
     panel->kind = PANEL_UPLOAD_PLAN;
     add_order(r, REGISTER_UPLOAD_KIND, PANEL_UPLOAD_PLAN);
     refusal = give_order(r);
     if (refusal != PANEL_REFUSAL_NONE)
         return refusal;
     memset(panel->upload_text, 0, sizeof panel->upload_text);
-    return panel_upload_stream(&panel->upload, store, r->mailbox.upload_size, r->mailbox.upload_crc)
+    return takt_panel_upload_stream(&panel->upload, store, r->mailbox.upload_size,
+                                    r->mailbox.upload_crc)
                ? PANEL_REFUSAL_NONE
                : PANEL_REFUSAL_VALUE;
 }
@@ -282,9 +284,9 @@ static enum panel_refusal begin_stream(struct panel_request *r)
         return PANEL_REFUSAL_VALUE;
     if (is_busy(r->state))
         return PANEL_REFUSAL_STATE;
-    panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
-    if (!panel_upload_stream(&panel->upload, &panel->config.store, mailbox->upload_size,
-                             mailbox->upload_crc))
+    takt_panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
+    if (!takt_panel_upload_stream(&panel->upload, &panel->config.store, mailbox->upload_size,
+                                  mailbox->upload_crc))
         return PANEL_REFUSAL_STATE;
     return hand_over(r, mailbox->upload_size, mailbox->upload_crc);
 }
@@ -301,14 +303,14 @@ static enum panel_refusal commit(struct panel_request *r)
 
     if (panel->upload.state != PANEL_UPLOAD_WHOLE || panel->upload.is_stream)
         return PANEL_REFUSAL_STATE;
-    if (!panel_upload_is_right(&panel->upload))
+    if (!takt_panel_upload_is_right(&panel->upload))
         return PANEL_REFUSAL_VALUE;
     if (!store->prepare(store->context))
         return PANEL_REFUSAL_BUSY;
     refusal = hand_over(r, panel->upload.size, panel->upload.crc);
     if (refusal != PANEL_REFUSAL_NONE)
         return refusal;
-    panel_upload_abandon(&panel->upload, store);
+    takt_panel_upload_abandon(&panel->upload, store);
     return store->place(store->context) ? PANEL_REFUSAL_NONE : PANEL_REFUSAL_BUSY;
 }
 
@@ -319,11 +321,12 @@ static enum panel_refusal begin(const struct panel_request *r)
 
     if (mailbox->upload_kind == PANEL_UPLOAD_PLAN)
         return PANEL_REFUSAL_VALUE;
-    panel_turn_upload(panel, mailbox->upload_kind);
+    takt_panel_turn_upload(panel, mailbox->upload_kind);
     if (panel->kind == PANEL_UPLOAD_SETTINGS)
-        return panel_begin_settings(panel, mailbox);
-    return mailbox->upload_size > 0 && panel_upload_begin(&panel->upload, &panel->config.store,
-                                                          mailbox->upload_size, mailbox->upload_crc)
+        return takt_panel_begin_settings(panel, mailbox);
+    return mailbox->upload_size > 0 &&
+                   takt_panel_upload_begin(&panel->upload, &panel->config.store,
+                                           mailbox->upload_size, mailbox->upload_crc)
                ? PANEL_REFUSAL_NONE
                : PANEL_REFUSAL_VALUE;
 }
@@ -336,11 +339,11 @@ static enum panel_refusal command_upload(struct panel_request *r)
     case PANEL_UPLOAD_BEGIN:
         return begin(r);
     case PANEL_UPLOAD_COMMIT:
-        return panel->kind == PANEL_UPLOAD_SETTINGS ? panel_commit_settings(panel) : commit(r);
+        return panel->kind == PANEL_UPLOAD_SETTINGS ? takt_panel_commit_settings(panel) : commit(r);
     case PANEL_UPLOAD_STREAM:
         return begin_stream(r);
     case PANEL_UPLOAD_ABANDON:
-        panel_upload_abandon(&panel->upload, panel_get_store(panel));
+        takt_panel_upload_abandon(&panel->upload, takt_panel_get_store(panel));
         break;
     }
     return PANEL_REFUSAL_NONE;
@@ -353,14 +356,15 @@ static enum panel_refusal take_chunk(const struct panel_request *r)
     if (panel->upload.state == PANEL_UPLOAD_NONE)
         return PANEL_REFUSAL_STATE;
     if (r->mailbox.chunk_offset <= panel->upload.received &&
-        r->mailbox.chunk_length > panel->upload.received - r->mailbox.chunk_offset +
-                                      panel_upload_room(&panel->upload, panel_get_store(panel)) &&
+        r->mailbox.chunk_length >
+            panel->upload.received - r->mailbox.chunk_offset +
+                takt_panel_upload_room(&panel->upload, takt_panel_get_store(panel)) &&
         r->mailbox.chunk_length <= panel->upload.size - r->mailbox.chunk_offset)
         return PANEL_REFUSAL_BUSY;
-    if (panel_upload_take(&panel->upload, panel_get_store(panel), r->mailbox.chunk_offset,
-                          r->mailbox.chunk, r->mailbox.chunk_length, r->check))
+    if (takt_panel_upload_take(&panel->upload, takt_panel_get_store(panel), r->mailbox.chunk_offset,
+                               r->mailbox.chunk, r->mailbox.chunk_length, r->check))
         return PANEL_REFUSAL_NONE;
-    return panel->kind == PANEL_UPLOAD_PLAN ? panel_tell_why(panel, PANEL_REFUSAL_VALUE)
+    return panel->kind == PANEL_UPLOAD_PLAN ? takt_panel_tell_why(panel, PANEL_REFUSAL_VALUE)
                                             : PANEL_REFUSAL_VALUE;
 }
 
@@ -395,7 +399,7 @@ static __attribute__((noinline)) void look_at_state(struct panel_request *r)
 {
     struct panel_snapshot snapshot;
 
-    panel_look(r->client->panel, &snapshot);
+    takt_panel_look(r->client->panel, &snapshot);
     r->state = (enum panel_state)snapshot.value[REGISTER_STATE];
     r->cycles = snapshot.value[REGISTER_CYCLES];
     r->has_owner = snapshot.value[REGISTER_WATCHDOG] != 0;
@@ -457,22 +461,23 @@ static enum panel_refusal serve_here(struct panel_request *r)
     return refusal;
 }
 
-enum panel_refusal panel_client_order(struct panel_client *client, const struct panel_order *order)
+enum panel_refusal takt_panel_client_order(struct panel_client *client,
+                                           const struct panel_order *order)
 {
     struct panel_request request = {.client = client, .order = *order};
 
     return serve_here(&request);
 }
 
-enum panel_refusal panel_client_unlock(struct panel_client *client, uint32_t password)
+enum panel_refusal takt_panel_client_unlock(struct panel_client *client, uint32_t password)
 {
     struct panel_request request = {.client = client, .has_password = true, .password = password};
 
     return serve_here(&request);
 }
 
-enum modbus_exception panel_write(void *context, enum modbus_table table, uint16_t address,
-                                  uint16_t count, const uint8_t *data)
+enum modbus_exception takt_panel_write(void *context, enum modbus_table table, uint16_t address,
+                                       uint16_t count, const uint8_t *data)
 {
     struct panel_client *client = context;
     struct panel_request request = {.client = client};

@@ -22,10 +22,10 @@ static_assert(sizeof(struct panel_register) == 8, "a row of the table is small")
 
 PANEL_REGISTERS(PANEL_CHECK)
 
-const struct panel_register panel_registers[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_ROW)};
-const struct panel_text panel_texts[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_TEXTS)};
+const struct panel_register takt_panel_registers[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_ROW)};
+const struct panel_text takt_panel_texts[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_TEXTS)};
 
-int32_t panel_least(const struct panel_register *row)
+int32_t takt_panel_least(const struct panel_register *row)
 {
     if (row->least == PANEL_FROM_MINUS_MOST)
         return -(int32_t)panel_most(row);
@@ -45,7 +45,7 @@ static unsigned row_before(uint32_t place)
 
     while (high - low > 1) {
         const unsigned middle = (low + high) / 2;
-        const struct panel_register *row = &panel_registers[middle];
+        const struct panel_register *row = &takt_panel_registers[middle];
 
         if (place_of(row->table, row->address) <= place)
             low = middle;
@@ -55,10 +55,10 @@ static unsigned row_before(uint32_t place)
     return low;
 }
 
-enum panel_id panel_find(enum modbus_table table, uint16_t address)
+enum panel_id takt_panel_find(enum modbus_table table, uint16_t address)
 {
     const unsigned id = row_before(place_of(table, address));
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
 
     if (row->table != (unsigned)table || address < row->address ||
         address - row->address >= row->words)
@@ -66,11 +66,11 @@ enum panel_id panel_find(enum modbus_table table, uint16_t address)
     return (enum panel_id)id;
 }
 
-bool panel_is_gap(enum modbus_table table, uint16_t address)
+bool takt_panel_is_gap(enum modbus_table table, uint16_t address)
 {
     const unsigned next = row_before(place_of(table, address)) + 1;
 
-    return next < REGISTER_COUNT && panel_registers[next].table == (unsigned)table;
+    return next < REGISTER_COUNT && takt_panel_registers[next].table == (unsigned)table;
 }
 
 /* Bit 5 is all that parts the cases of a letter. */
@@ -92,25 +92,25 @@ static bool same_name(const char *name, const char *given)
     return *name == '\0' && *given == '\0';
 }
 
-enum panel_id panel_find_name(const char *name)
+enum panel_id takt_panel_find_name(const char *name)
 {
     unsigned id = 0;
 
-    while (id < REGISTER_COUNT && !same_name(panel_texts[id].name, name))
+    while (id < REGISTER_COUNT && !same_name(takt_panel_texts[id].name, name))
         id++;
     return (enum panel_id)id;
 }
 
-double panel_counts_per_unit(enum panel_id id)
+double takt_panel_counts_per_unit(enum panel_id id)
 {
     double counts = 1.0;
 
-    for (unsigned i = 0; i < panel_registers[id].decimals; i++)
+    for (unsigned i = 0; i < takt_panel_registers[id].decimals; i++)
         counts *= 10.0;
     return counts;
 }
 
-bool panel_may_write(enum panel_id id, enum panel_state state)
+bool takt_panel_may_write(enum panel_id id, enum panel_state state)
 {
-    return (panel_registers[id].states & PANEL_IN(state)) != 0;
+    return (takt_panel_registers[id].states & PANEL_IN(state)) != 0;
 }

@@ -360,7 +360,7 @@ static inline uint32_t panel_most(const struct panel_register *row)
     return (uint32_t)row->range << row->range_bits;
 }
 
-int32_t panel_least(const struct panel_register *row);
+int32_t takt_panel_least(const struct panel_register *row);
 
 /* What only those ask who show the table: an image that does not is without it. */
 struct panel_text {
@@ -369,27 +369,27 @@ struct panel_text {
     const char *meaning;
 };
 
-extern const struct panel_register panel_registers[REGISTER_COUNT];
-extern const struct panel_text panel_texts[REGISTER_COUNT];
+extern const struct panel_register takt_panel_registers[REGISTER_COUNT];
+extern const struct panel_text takt_panel_texts[REGISTER_COUNT];
 
 static inline const struct panel_text *panel_text(const struct panel_register *row)
 {
-    return &panel_texts[row - panel_registers];
+    return &takt_panel_texts[row - takt_panel_registers];
 }
 
 /* The row that has this register among its own; REGISTER_COUNT: none. */
-enum panel_id panel_find(enum modbus_table table, uint16_t address);
+enum panel_id takt_panel_find(enum modbus_table table, uint16_t address);
 
 /* No row has this register, but one behind it has: it reads as 0, so that rows around it may be read at once. */
-bool panel_is_gap(enum modbus_table table, uint16_t address);
+bool takt_panel_is_gap(enum modbus_table table, uint16_t address);
 
 /* The row of that name, upper or lower case; REGISTER_COUNT: none. */
-enum panel_id panel_find_name(const char *name);
+enum panel_id takt_panel_find_name(const char *name);
 
 /* Counts of a register that make one of its units: 10^decimals. */
-double panel_counts_per_unit(enum panel_id id);
+double takt_panel_counts_per_unit(enum panel_id id);
 
 /* Does the table let this register be written in a state? */
-bool panel_may_write(enum panel_id id, enum panel_state state);
+bool takt_panel_may_write(enum panel_id id, enum panel_state state);
 
 #endif

@@ -20,7 +20,7 @@ static inline int64_t panel_value(const struct panel_snapshot *snapshot, enum pa
 {
     const uint32_t bits = snapshot->value[id];
 
-    return panel_registers[id].form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
+    return takt_panel_registers[id].form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
 }
 
 /* More than one request can write: registers of a table that are an order, by the test of the room. */

@@ -9,11 +9,11 @@
 static bool may_go_on(const struct panel_upload *upload, uint32_t size, uint32_t crc)
 {
     return upload->size == size && upload->crc == crc &&
-           (upload->state == PANEL_UPLOAD_OPEN || panel_upload_is_right(upload));
+           (upload->state == PANEL_UPLOAD_OPEN || takt_panel_upload_is_right(upload));
 }
 
-bool panel_upload_begin(struct panel_upload *upload, const struct panel_store *store, uint32_t size,
-                        uint32_t crc)
+bool takt_panel_upload_begin(struct panel_upload *upload, const struct panel_store *store,
+                             uint32_t size, uint32_t crc)
 {
     if (may_go_on(upload, size, crc))
         return true;
@@ -23,8 +23,8 @@ bool panel_upload_begin(struct panel_upload *upload, const struct panel_store *s
     return true;
 }
 
-bool panel_upload_stream(struct panel_upload *upload, const struct panel_store *store,
-                         uint32_t size, uint32_t crc)
+bool takt_panel_upload_stream(struct panel_upload *upload, const struct panel_store *store,
+                              uint32_t size, uint32_t crc)
 {
     if (store->begin_stream == NULL || !store->begin_stream(store->context, size))
         return false;
@@ -33,7 +33,7 @@ bool panel_upload_stream(struct panel_upload *upload, const struct panel_store *
     return true;
 }
 
-uint32_t panel_upload_room(const struct panel_upload *upload, const struct panel_store *store)
+uint32_t takt_panel_upload_room(const struct panel_upload *upload, const struct panel_store *store)
 {
     const uint32_t left = upload->size - upload->received;
     const uint32_t room = store->room == NULL ? left : store->room(store->context);
@@ -52,34 +52,34 @@ static void complete(struct panel_upload *upload, const struct panel_store *stor
 {
     upload->state = PANEL_UPLOAD_WHOLE;
     if (upload->is_stream)
-        store->end_stream(store->context, panel_upload_is_right(upload));
+        store->end_stream(store->context, takt_panel_upload_is_right(upload));
 }
 
-bool panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
-                       uint32_t offset, const uint8_t *data, size_t length, uint16_t check)
+bool takt_panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
+                            uint32_t offset, const uint8_t *data, size_t length, uint16_t check)
 {
     size_t known;
 
-    if (!fits(upload, offset, length) || crc16(data, length) != check)
+    if (!fits(upload, offset, length) || takt_crc16(data, length) != check)
         return false;
     known = upload->received - offset;
     if (known >= length)
         return true;
     if (!store->write(store->context, upload->received, data + known, length - known))
         return false;
-    upload->received_crc = crc32_add(upload->received_crc, data + known, length - known);
+    upload->received_crc = takt_crc32_add(upload->received_crc, data + known, length - known);
     upload->received += (uint32_t)(length - known);
     if (upload->received == upload->size)
         complete(upload, store);
     return true;
 }
 
-bool panel_upload_is_right(const struct panel_upload *upload)
+bool takt_panel_upload_is_right(const struct panel_upload *upload)
 {
     return upload->state == PANEL_UPLOAD_WHOLE && upload->received_crc == upload->crc;
 }
 
-void panel_upload_abandon(struct panel_upload *upload, const struct panel_store *store)
+void takt_panel_upload_abandon(struct panel_upload *upload, const struct panel_store *store)
 {
     if (upload->is_stream && upload->state == PANEL_UPLOAD_OPEN)
         store->end_stream(store->context, false);

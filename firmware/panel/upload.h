@@ -39,26 +39,26 @@ struct panel_upload {
 };
 
 /* Begins, or goes on with an open upload of the same size and CRC. False: the store has no room. */
-bool panel_upload_begin(struct panel_upload *upload, const struct panel_store *store, uint32_t size,
-                        uint32_t crc);
+bool takt_panel_upload_begin(struct panel_upload *upload, const struct panel_store *store,
+                             uint32_t size, uint32_t crc);
 
 /* Begins a stream. False: the store does not, or what runs keeps it. */
-bool panel_upload_stream(struct panel_upload *upload, const struct panel_store *store,
-                         uint32_t size, uint32_t crc);
+bool takt_panel_upload_stream(struct panel_upload *upload, const struct panel_store *store,
+                              uint32_t size, uint32_t crc);
 
 /* Bytes that can be handed in now. */
-uint32_t panel_upload_room(const struct panel_upload *upload, const struct panel_store *store);
+uint32_t takt_panel_upload_room(const struct panel_upload *upload, const struct panel_store *store);
 
 /*
  * A chunk. It may repeat bytes that are there already (the reply to it may have been lost) but leave none out. False: it
  * does not fit, its check is wrong, or no upload is open; nothing has changed.
  */
-bool panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
-                       uint32_t offset, const uint8_t *data, size_t length, uint16_t check);
+bool takt_panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
+                            uint32_t offset, const uint8_t *data, size_t length, uint16_t check);
 
 /* All bytes are there and are those that were announced. */
-bool panel_upload_is_right(const struct panel_upload *upload);
+bool takt_panel_upload_is_right(const struct panel_upload *upload);
 
-void panel_upload_abandon(struct panel_upload *upload, const struct panel_store *store);
+void takt_panel_upload_abandon(struct panel_upload *upload, const struct panel_store *store);
 
 #endif

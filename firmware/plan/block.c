@@ -20,13 +20,13 @@
 
 #include <string.h>
 
-/* A joint that uses a share of the jerk uses at most this part of it of the acceleration (joint.c). */
-#define ACCELERATION_PER_SHARE 0.2
+/* A junction that uses a part of the jerk budget uses at most this part of it of the acceleration (junction.c). */
+#define ACCELERATION_PER_JERK_BUDGET 0.2
 
 /* An axis outside the plane of an arc of two radii accelerates a little at constant feed: at most this part. */
 #define SPIRAL_PART 0.1
 
-/* A block lasts at least cycle / CYCLE_BLOCKS_MAX, so that a cycle passes a bounded number of joints. */
+/* A block lasts at least cycle / CYCLE_BLOCKS_MAX, so that a cycle passes a bounded number of junctions. */
 #define CYCLE_BLOCKS_MAX 8.0
 
 struct bound {
@@ -43,28 +43,28 @@ static void bound_lower(struct bound *c, double feed_mm_s, enum governor governo
 }
 
 /* On an arc: second v^2 <= ARC_ACCELERATION A, third v^3 <= ARC_JERK J. */
-static struct bound block_ceiling(const struct block *b, double share, double program_mm_s)
+static struct bound block_ceiling(const struct block *b, double jerk_budget, double program_mm_s)
 {
     const struct block_shape *shape = &b->shape;
     struct bound c = {program_mm_s, GOVERNOR_PROGRAM};
 
     bound_lower(&c, b->feed_cap_mm_s, b->cap);
     if (shape->first > 0.0) {
-        const double a = shape->plane_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
-        const double j = shape->plane_j_mm_s3 * (1.0 - share);
+        const double a = shape->plane_a_mm_s2 * (1.0 - ACCELERATION_PER_JERK_BUDGET * jerk_budget);
+        const double j = shape->plane_j_mm_s3 * (1.0 - jerk_budget);
 
         bound_lower(&c, maths_sqrt(ARC_ACCELERATION * a / shape->second), GOVERNOR_ACCELERATION);
-        bound_lower(&c, maths_cbrt(ARC_JERK * j / shape->third), GOVERNOR_JERK);
+        bound_lower(&c, takt_maths_cbrt(ARC_JERK * j / shape->third), GOVERNOR_JERK);
     }
     return c;
 }
 
 /* What an arc at feed v leaves for a ramp: the formulas at the top solved for a and j. */
-static void limit_arc_ramp(struct block *b, double share, double v)
+static void limit_arc_ramp(struct block *b, double jerk_budget, double v)
 {
     const struct block_shape *shape = &b->shape;
-    const double a_max = shape->plane_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
-    const double j_max = shape->plane_j_mm_s3 * (1.0 - share);
+    const double a_max = shape->plane_a_mm_s2 * (1.0 - ACCELERATION_PER_JERK_BUDGET * jerk_budget);
+    const double j_max = shape->plane_j_mm_s3 * (1.0 - jerk_budget);
     const double normal = shape->second * v * v;
     const double along = maths_sqrt(a_max * a_max - normal * normal) / shape->first;
     const double turning = RAMP_NORMAL * j_max / (3.0 * shape->second * v);
@@ -75,48 +75,49 @@ static void limit_arc_ramp(struct block *b, double share, double v)
 }
 
 /* Limits are found for the highest override, so that they hold while the feed is on its way to a lower one. */
-void block_set_share(struct block *b, double share)
+void takt_block_set_jerk_budget(struct block *b, double jerk_budget)
 {
-    b->share = share;
-    b->feed_max_mm_s = block_ceiling(b, share, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
-    b->a_mm_s2 = b->shape.line_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
-    b->j_mm_s3 = b->shape.line_j_mm_s3 * (1.0 - share);
+    b->jerk_budget = jerk_budget;
+    b->feed_max_mm_s =
+        block_ceiling(b, jerk_budget, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
+    b->a_mm_s2 = b->shape.line_a_mm_s2 * (1.0 - ACCELERATION_PER_JERK_BUDGET * jerk_budget);
+    b->j_mm_s3 = b->shape.line_j_mm_s3 * (1.0 - jerk_budget);
     if (b->shape.first > 0.0) {
-        limit_arc_ramp(b, share, b->feed_max_mm_s);
+        limit_arc_ramp(b, jerk_budget, b->feed_max_mm_s);
     }
 }
 
-void block_cap_feed(struct block *b, double feed_mm_s, enum governor governor)
+void takt_block_cap_feed(struct block *b, double feed_mm_s, enum governor governor)
 {
     if (feed_mm_s < b->feed_cap_mm_s) {
         b->feed_cap_mm_s = feed_mm_s;
         b->cap = governor;
-        block_set_share(b, b->share);
+        takt_block_set_jerk_budget(b, b->jerk_budget);
     }
 }
 
-double block_top_feed(const struct block *b)
+double takt_block_top_feed(const struct block *b)
 {
     return block_ceiling(b, 0.0, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
 }
 
-double block_limit(const struct block *b, enum governor *governor)
+double takt_block_limit(const struct block *b, enum governor *governor)
 {
-    const struct bound c = block_ceiling(b, b->share, MATHS_INFINITY);
+    const struct bound c = block_ceiling(b, b->jerk_budget, MATHS_INFINITY);
 
     *governor = c.governor;
     return c.feed_mm_s;
 }
 
-enum governor block_governor(const struct block *b, double program_mm_s)
+enum governor takt_block_governor(const struct block *b, double program_mm_s)
 {
-    return block_ceiling(b, b->share, program_mm_s).governor;
+    return block_ceiling(b, b->jerk_budget, program_mm_s).governor;
 }
 
 /*
  * Limits of one axis that moves straight along the path, or, beside an arc of two radii, nearly so: with
  * u = second v^2 / A and w = (third v^3 + 3 second v a) / J it keeps u <= SPIRAL_PART and both terms of w <= SPIRAL_PART / 2
- * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_SHARE_MAX): what joints
+ * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_SHARE_MAX): what junctions
  * take is taken from a and j alone.
  */
 static void limit_line_axis(struct block_shape *shape, struct bound *c,
@@ -131,7 +132,7 @@ static void limit_line_axis(struct block_shape *shape, struct bound *c,
         const double part_j = 0.5 * SPIRAL_PART * j;
 
         bound_lower(c, maths_sqrt(SPIRAL_PART * a / second), GOVERNOR_ACCELERATION);
-        bound_lower(c, maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
+        bound_lower(c, takt_maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
         const double v = c->feed_mm_s;
         const double path_a =
             maths_min((a - 2.0 * second * v * v) / bounds->first[i], part_j / (3.0 * second * v));
@@ -164,7 +165,7 @@ static double chord_ceiling(const struct curve *curve, const struct curve_bounds
     if (curve->kind != CURVE_INVOLUTE) {
         return round;
     }
-    const double cusped = involute_step_max(curve, chord_mm) / limits->cycle_s;
+    const double cusped = takt_involute_step_max(curve, chord_mm) / limits->cycle_s;
 
     return bounds->radius_min_mm <= chord_mm ? cusped : maths_max(cusped, round);
 }
@@ -173,8 +174,8 @@ static double chord_ceiling(const struct curve *curve, const struct curve_bounds
  * On an arc of two radii x_ss and x_sss are not quite normal to the path and along it. What the formulas at the top
  * miss is at most along (second v^2) in acceleration, and along (3 second v a) + across (third v^3) in jerk.
  */
-static void limit_bent_plane(struct block_shape *shape, enum axis first, enum axis second,
-                             const struct curve_bounds *bounds, const struct plan_limits *limits)
+static void limit_curved_plane(struct block_shape *shape, enum axis first, enum axis second,
+                               const struct curve_bounds *bounds, const struct plan_limits *limits)
 {
     const double along = bounds->second_along / bounds->second[first];
     const double across = bounds->third_across / bounds->third[first];
@@ -201,10 +202,10 @@ static void limit_cusp_plane(struct block_shape *shape, enum axis first, enum ax
     const double j = maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]);
     const double ratio = bounds->first[first];
 
-    shape->line_a_mm_s2 =
-        maths_min(shape->line_a_mm_s2, a / (ratio * involute_cusp_acceleration(bounds->cusp_rad)));
+    shape->line_a_mm_s2 = maths_min(
+        shape->line_a_mm_s2, a / (ratio * takt_involute_cusp_acceleration(bounds->cusp_rad)));
     shape->line_j_mm_s3 =
-        maths_min(shape->line_j_mm_s3, j / (ratio * involute_cusp_jerk(bounds->cusp_rad)));
+        maths_min(shape->line_j_mm_s3, j / (ratio * takt_involute_cusp_jerk(bounds->cusp_rad)));
 }
 
 /* Derivatives by the path, of which a mm is so much of the curve; the radius stays what it is. */
@@ -221,16 +222,16 @@ static void scale_bounds(struct curve_bounds *b, double scale)
     b->third_across *= square * scale;
 }
 
-/* Limits of the axes, and for bent curves the chord error. */
+/* Limits of the axes, and for curved curves the chord error. */
 static void limit_axes(struct block_shape *shape, struct bound *c, const struct curve *curve,
                        double scale, const struct plan_limits *limits)
 {
     struct curve_bounds bounds;
     enum axis first = AXIS_COUNT;
     enum axis second = AXIS_COUNT;
-    const bool bent = curve_plane(curve, &first, &second);
+    const bool curved = takt_curve_plane(curve, &first, &second);
 
-    curve_bound(curve, &bounds);
+    takt_curve_bound(curve, &bounds);
     scale_bounds(&bounds, scale);
     for (int i = 0; i < AXIS_COUNT; i++) {
         if (bounds.first[i] > 0.0) {
@@ -242,49 +243,49 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
             limit_line_axis(shape, c, &bounds, limits, i);
         }
     }
-    if (bent && bounds.cusp_rad > 0.0) {
+    if (curved && bounds.cusp_rad > 0.0) {
         limit_cusp_plane(shape, first, second, &bounds, limits);
-    } else if (bent) {
-        limit_bent_plane(shape, first, second, &bounds, limits);
+    } else if (curved) {
+        limit_curved_plane(shape, first, second, &bounds, limits);
     }
-    if (bent) {
+    if (curved) {
         bound_lower(c, chord_ceiling(curve, &bounds, limits) / scale, GOVERNOR_CHORD);
     }
 }
 
-void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
-                      const struct plan_limits *limits)
+void takt_block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
+                           const struct plan_limits *limits)
 {
-    const struct scale machine = scale_of_machine(limits);
+    const struct scale machine = takt_scale_of_machine(limits);
     struct bound c = {MATHS_INFINITY, GOVERNOR_VELOCITY};
 
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->curve = *curve;
-    b->scale = scale_of_curve(curve, &machine);
+    b->scale = takt_scale_of_curve(curve, &machine);
     b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s / b->scale;
     b->length_mm = curve->length_mm / b->scale;
     b->length = path_units(b->length_mm);
-    b->rotary = curve_is_rotary(curve);
-    b->end = JOINT_STOP;
+    b->rotary = takt_curve_is_rotary(curve);
+    b->end = JUNCTION_STOP;
     b->shape.line_a_mm_s2 = MATHS_INFINITY;
     b->shape.line_j_mm_s3 = MATHS_INFINITY;
     limit_axes(&b->shape, &c, curve, b->scale, limits);
     bound_lower(&c, CYCLE_BLOCKS_MAX * b->length_mm / limits->cycle_s, GOVERNOR_SHORT);
     b->feed_cap_mm_s = c.feed_mm_s;
     b->cap = c.governor;
-    block_set_share(b, BLOCK_SHARE_MAX);
+    takt_block_set_jerk_budget(b, BLOCK_JERK_BUDGET_MAX);
 }
 
 /* Its limits hold for every rate of nominal time up to the highest one. */
-void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm)
+void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm)
 {
     const struct smooth_rate *rate = &piece->rate;
 
     memset(b, 0, sizeof(*b));
     b->move = *piece->move;
     b->number = piece->number;
-    curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
+    takt_curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
     b->rotary = piece->rotary;
     b->scale = 1.0;
     b->length_mm = b->curve.length_mm;
@@ -294,20 +295,20 @@ void block_set_smooth(struct block *b, const struct smooth_piece *piece, double 
     b->cap = GOVERNOR_SMOOTH;
     b->shape.line_a_mm_s2 = piece->change.by * unit_mm;
     b->shape.line_j_mm_s3 = piece->change.rounded * unit_mm;
-    b->end = JOINT_STOP;
-    block_set_share(b, 0.0);
+    b->end = JUNCTION_STOP;
+    takt_block_set_jerk_budget(b, 0.0);
 }
 
-void block_join_smooth(struct block *b, const struct block *next)
+void takt_block_join_smooth(struct block *b, const struct block *next)
 {
-    b->end = JOINT_PASSED;
-    b->feed_joint_mm_s = MATHS_INFINITY;
+    b->end = JUNCTION_PASSED;
+    b->feed_junction_mm_s = MATHS_INFINITY;
     b->continues = b->number == next->number;
 }
 
-void block_set_wait(struct block *b, const struct move *move)
+void takt_block_set_wait(struct block *b, const struct move *move)
 {
     memset(b, 0, sizeof(*b));
     b->move = *move;
-    b->end = JOINT_STOP;
+    b->end = JUNCTION_STOP;
 }

@@ -29,10 +29,10 @@ enum governor {
 };
 
 /* What limits the feed at the end of a block. */
-enum joint_kind {
-    JOINT_PASSED,  /* full feed: the end is inside a span */
-    JOINT_REDUCED, /* the change of direction or curvature needs a lower feed: landed */
-    JOINT_STOP     /* rest: landed */
+enum junction_kind {
+    JUNCTION_PASSED,  /* full feed: the end is inside a span */
+    JUNCTION_REDUCED, /* the change of direction or curvature needs a lower feed: landed */
+    JUNCTION_STOP     /* rest: landed */
 };
 
 /*
@@ -55,7 +55,7 @@ struct block {
     uint32_t number;  /* of the motion, from 1; a wait has the number of the motion before it */
     bool continues;   /* another piece of the same move follows */
     bool rotary;      /* no linear axis moves: programmed feeds count rad */
-    enum joint_kind end;
+    enum junction_kind end;
     enum governor cap; /* of feed_cap_mm_s */
     uint64_t start;    /* path position, path units (path_unit.h) */
     uint64_t length;   /* path units; 0: a wait, the axes stand */
@@ -65,48 +65,48 @@ struct block {
     struct block_shape shape;
 
     double feed_program_mm_s; /* as programmed; infinite for a rapid */
-    double feed_cap_mm_s;     /* axis velocities, chord error, joints */
+    double feed_cap_mm_s;     /* axis velocities, chord error, junctions */
     double
-        feed_max_mm_s; /* feed_cap with curvature and share: never exceeded, whatever the override */
-    double a_mm_s2;    /* along the path, what curvature and share leave at that feed */
+        feed_max_mm_s; /* feed_cap with curvature and jerk budget: never exceeded, whatever the override */
+    double a_mm_s2; /* along the path, what curvature and jerk budget leave at that feed */
     double j_mm_s3;
 
     double
-        share_joint; /* part of the jerk limit that blocks near the joint at the end must leave */
-    double share;    /* part left to joints: BLOCK_SHARE_MAX until the block is closed */
-    double feed_joint_mm_s; /* highest feed at which the joint at the end may be passed */
+        jerk_budget_junction; /* part of the jerk limit that blocks near the junction at the end must leave */
+    double jerk_budget; /* part left to junctions: BLOCK_SHARE_MAX until the block is closed */
+    double feed_junction_mm_s; /* highest feed at which the junction at the end may be passed */
 };
 
-/* Fills b from a motion's curve. Its end is a stop until a joint is formed. */
-void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
-                      const struct plan_limits *limits);
+/* Fills b from a motion's curve. Its end is a stop until a junction is formed. */
+void takt_block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
+                           const struct plan_limits *limits);
 
 /*
  * Fills b with a piece of a smoothed curve (firmware/smooth), of which unit_mm of path are passed in a second of its
- * nominal time. Its end is a stop until block_join_smooth().
+ * nominal time. Its end is a stop until takt_block_join_smooth().
  */
-void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm);
+void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm);
 
 /* The next piece of the same smoothed curve follows: nothing changes at the end of b. */
-void block_join_smooth(struct block *b, const struct block *next);
+void takt_block_join_smooth(struct block *b, const struct block *next);
 
 /* Fills b with something that happens while the axes stand. */
-void block_set_wait(struct block *b, const struct move *move);
+void takt_block_set_wait(struct block *b, const struct move *move);
 
 /* Lowers the ceiling of the feed to feed_mm_s, for the reason given; a higher value changes nothing. */
-void block_cap_feed(struct block *b, double feed_mm_s, enum governor governor);
+void takt_block_cap_feed(struct block *b, double feed_mm_s, enum governor governor);
 
-/* Sets the share left to the joints and what follows from it. */
-void block_set_share(struct block *b, double share);
+/* Sets the jerk budget of the junctions and what follows from it. */
+void takt_block_set_jerk_budget(struct block *b, double jerk_budget);
 
-/* The most this block will ever be allowed: if no joint took a share. */
-double block_top_feed(const struct block *b);
+/* The most this block will ever be allowed: if no junction took any of the jerk. */
+double takt_block_top_feed(const struct block *b);
 
 /* The ceiling of the feed whatever is programmed, and what governs it; GOVERNOR_PROGRAM: there is none. */
-double block_limit(const struct block *b, enum governor *governor);
+double takt_block_limit(const struct block *b, enum governor *governor);
 
 /* What governs a feed ceiling of program_mm_s (programmed feed with the override) on this block. */
-enum governor block_governor(const struct block *b, double program_mm_s);
+enum governor takt_block_governor(const struct block *b, double program_mm_s);
 
 static inline bool block_is_motion(const struct block *b)
 {

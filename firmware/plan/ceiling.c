@@ -1,5 +1,5 @@
 /*
- * Goal: the highest feed of the lead point everywhere, from which the rest of the window can be met and stopped, in
+ * Goal: the highest feed of the trapezoidal reference everywhere, from which the rest of the window can be met and stopped, in
  * time linear in blocks. How the pieces lie against the blocks, and why limits then hold for the setpoint, is in
  * spans.md.
  *
@@ -22,18 +22,18 @@ static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
 static_assert(sizeof(struct ceiling_piece) == 20, "no padding");
 
 /*
- * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
+ * Between being asked for and being taken a ceiling grows this many cycles old at most (MOTION_EXCHANGE_CYCLES and the
  * cycles of taking it).
  */
 #define AGE_CYCLES 64.0
 
-/* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most so many at once. */
-#define HEADS_MAX 16
+/* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most this many at once. */
+#define TRAILING_MAX 16
 
-/* A joint feed that the lead point reaches from rest in this many cycles is not worth passing: it comes to rest. */
+/* A junction feed that the trapezoidal reference reaches from rest in this many cycles is not worth passing: it comes to rest. */
 #define PASS_WORTH 2.0
 
-struct head {
+struct trailing_limit {
     double a;
     double end_mm;
 };
@@ -44,15 +44,16 @@ struct builder {
     const struct ceiling_request *request;
     double cycle_s;
     uint32_t cycles; /* of the first box, in the span being laid */
-    double behind;   /* cycles that the setpoint follows behind the lead point, with the margin */
+    double
+        behind; /* cycles that the setpoint follows behind the trapezoidal reference, with the margin */
     double begin_mm; /* where the newest ceiling begins, */
     double
         early_mm; /* and where it would at the highest override: its acceleration counts from there on */
     double fastest;  /* the highest feed of those laid so far */
     double gentlest; /* and the lowest acceleration */
     uint32_t start;  /* block that begins what is being laid */
-    unsigned heads;
-    struct head head[HEADS_MAX]; /* both rising */
+    unsigned trailing_count;
+    struct trailing_limit trailing[TRAILING_MAX]; /* both rising */
 };
 
 /* As programmed, or so much per revolution as it turns now. */
@@ -61,18 +62,18 @@ static double program_feed(const struct path *path, uint32_t index,
 {
     const struct path_block *b = path_at(path, index);
     const double measured =
-        b->per_revolution ? path_feed_rev(path, index) * request->spindle_rev_s : 0.0;
+        b->per_revolution ? takt_path_feed_rev(path, index) * request->spindle_rev_s : 0.0;
 
     return measured > 0.0 ? measured : (double)b->feed_program_mm_s;
 }
 
-double ceiling_block_feed(const struct path *path, uint32_t index,
-                          const struct ceiling_request *request)
+double takt_ceiling_block_feed(const struct path *path, uint32_t index,
+                               const struct ceiling_request *request)
 {
     const struct path_block *b = path_at(path, index);
     const double ratio = b->rapid ? request->rapid_ratio : b->may_feed ? request->feed_ratio : 1.0;
     const double program = program_feed(path, index, request);
-    const double top = path_block_top(b);
+    const double top = takt_path_block_top(b);
 
     if (b->rapid || (request->proportional && ratio < 1.0)) {
         return ratio * maths_min(program, top);
@@ -80,36 +81,36 @@ double ceiling_block_feed(const struct path *path, uint32_t index,
     return maths_min(ratio * program, top);
 }
 
-double ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles)
+double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles)
 {
     const struct path_block *b = path_at(path, index);
     const double t = path->limits.cycle_s;
     const double a =
         maths_min((double)b->a_mm_s2 * (t * t), (double)b->j_mm_s3 * (t * t * t * (double)cycles));
 
-    return (double)maths_float_below(a);
+    return (double)takt_maths_float_below(a);
 }
 
 /*
- * Could the lead point not come to rest before a place any more when this ceiling is taken? By then it has gone on at its
+ * Could the trapezoidal reference not come to rest before a place any more when this ceiling is taken? By then it has gone on at its
  * feed, which it keeps for a window before it brakes: w t + w^2 / 2 a.
  */
 static bool is_near(const struct builder *s, uint64_t at)
 {
     const double cycles = AGE_CYCLES + 2.0 * s->behind + 0.5 * s->fastest / s->gentlest;
 
-    return path_mm(s->request->lead, at) <= s->fastest * cycles;
+    return path_mm(s->request->reference, at) <= s->fastest * cycles;
 }
 
 /*
- * The window of a span is a promise to a lead point that has begun it, or may begin it or land at its start under the
+ * The window of a span is a promise to a trapezoidal reference that has begun it, or may begin it or land at its start under the
  * ceiling made before; to others it is found anew until all of the span is known.
  */
 static struct span_window find_window(const struct builder *s, uint32_t index)
 {
     const struct ceiling_request *request = s->request;
     const struct path_block *b = path_at(s->path, index);
-    const bool inside = index == request->first && (int64_t)(request->lead - b->start) > 0;
+    const bool inside = index == request->first && (int64_t)(request->reference - b->start) > 0;
 
     if (inside || (int64_t)(request->span - b->start) >= 0) {
         return (struct span_window){request->cycles, b->cycles_known};
@@ -117,14 +118,14 @@ static struct span_window find_window(const struct builder *s, uint32_t index)
     if (b->cycles > 0 && (b->cycles_known || is_near(s, b->start))) {
         return (struct span_window){b->cycles, b->cycles_known};
     }
-    return span_window(s->path, request, index);
+    return takt_span_window(s->path, request, index);
 }
 
 static uint32_t promise_window(struct builder *s, uint32_t index)
 {
     const struct span_window window = find_window(s, index);
 
-    path_promise(s->path, index, window.cycles, window.known);
+    takt_path_promise(s->path, index, window.cycles, window.known);
     return window.cycles;
 }
 
@@ -134,11 +135,12 @@ static void begin_span(struct builder *s, uint32_t index)
     const uint64_t start = path_at(s->path, index)->start;
 
     s->cycles = promise_window(s, index);
-    s->behind = 0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) +
-                CEILING_MARGIN_CYCLES;
+    s->behind =
+        0.5 * ((double)takt_ramp_profile_window_cycles(s->path->limits.profile, s->cycles) - 1.0) +
+        CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
     s->early_mm = s->begin_mm;
-    s->heads = 0;
+    s->trailing_count = 0;
 }
 
 /* Blocks from the first on, as pieces count them. */
@@ -165,8 +167,8 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, float feed
 }
 
 /*
- * Of the pieces from k on, those that nothing is left of go, or a cycle would come to more than it looks at: all but the
- * first of a ceiling, which still binds until the setpoint has left it.
+ * Drops the pieces from k on that nothing is left of, or a cycle would come to more than it looks at: all but the first
+ * of a ceiling, which still binds until the setpoint has left it.
  */
 static void drop_empty(struct ceiling *c, uint32_t k)
 {
@@ -184,13 +186,13 @@ static void drop_empty(struct ceiling *c, uint32_t k)
 }
 
 /*
- * A ceiling begins where the lead point is when the setpoint, following at that feed, reaches at_mm. What lay there
+ * A ceiling begins where the trapezoidal reference is when the setpoint, following at that feed, reaches at_mm. What lay there
  * ends there; never before the beginning of the ceiling before it, since a faster one behind a slower cannot bind
  * earlier.
  */
-static void begin_ceiling(struct builder *s, double at_mm, double lead_mm)
+static void begin_ceiling(struct builder *s, double at_mm, double reference_mm)
 {
-    s->begin_mm = maths_max(s->begin_mm, at_mm - path_whole_mm(lead_mm));
+    s->begin_mm = maths_max(s->begin_mm, at_mm - path_whole_mm(reference_mm));
     uint32_t k = s->c->count;
 
     for (; k > 0 && s->c->end_mm[k - 1] > s->begin_mm; k--) {
@@ -212,14 +214,15 @@ static void divide(struct ceiling *c, uint32_t k, double at_mm)
 
 /*
  * What has been laid from a place on allows no more than the block being laid. It begins with a piece of its own, if need be
- * behind one without length: a lead point may have to stay in what was there before (motion/lead_place.c).
+ * behind one without length: a trapezoidal reference may have to stay in what was there before (motion/reference_place.c).
  */
 static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
 {
     struct ceiling *c = s->c;
 
     for (uint32_t k = c->count; k-- > 0 && c->end_mm[k] > from_mm;) {
-        if ((double)c->piece[k].acceleration <= a && (double)ceiling_top_feed(c, k) <= top_mm_s) {
+        if ((double)c->piece[k].acceleration <= a &&
+            (double)takt_ceiling_top_feed(c, k) <= top_mm_s) {
             continue;
         }
         if ((k > 0 ? c->end_mm[k - 1] : 0.0) <= from_mm) {
@@ -231,28 +234,28 @@ static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
 }
 
 /*
- * The setpoint may be in a block of less acceleration until the lead point is at end_mm, by the block's highest feed:
+ * The setpoint may be in a block of less acceleration until the trapezoidal reference is at end_mm, by the block's highest feed:
  * another override must not take back what was said. Forgets what that implies.
  */
-static void add_head(struct builder *s, double a, double end_mm)
+static void add_trailing(struct builder *s, double a, double end_mm)
 {
     unsigned kept = 0;
 
-    for (unsigned i = 0; i < s->heads; i++) {
-        if (s->head[i].a < a && s->head[i].end_mm > s->begin_mm) {
-            s->head[kept++] = s->head[i];
+    for (unsigned i = 0; i < s->trailing_count; i++) {
+        if (s->trailing[i].a < a && s->trailing[i].end_mm > s->begin_mm) {
+            s->trailing[kept++] = s->trailing[i];
         }
     }
-    if (kept > 0 && s->head[kept - 1].end_mm >= end_mm) {
-        s->heads = kept;
+    if (kept > 0 && s->trailing[kept - 1].end_mm >= end_mm) {
+        s->trailing_count = kept;
         return;
     }
-    if (kept == HEADS_MAX) {
+    if (kept == TRAILING_MAX) {
         kept--;
-        a = s->head[kept].a;
+        a = s->trailing[kept].a;
     }
-    s->head[kept] = (struct head){a, end_mm};
-    s->heads = kept + 1;
+    s->trailing[kept] = (struct trailing_limit){a, end_mm};
+    s->trailing_count = kept + 1;
 }
 
 /* The pieces of one ceiling up to end_mm: first those where a block left behind asks for less acceleration. */
@@ -262,10 +265,10 @@ static void append_pieces(struct builder *s, double end_mm, float feed_mm_s, dou
     const uint32_t first = s->c->count;
     double at_mm = s->begin_mm;
 
-    for (unsigned i = 0; i < s->heads; i++) {
-        if (s->head[i].a < a && s->head[i].end_mm > at_mm && at_mm < end_mm) {
-            at_mm = maths_min(s->head[i].end_mm, end_mm);
-            append(s, at_mm, feed_mm_s, s->head[i].a, leave);
+    for (unsigned i = 0; i < s->trailing_count; i++) {
+        if (s->trailing[i].a < a && s->trailing[i].end_mm > at_mm && at_mm < end_mm) {
+            at_mm = maths_min(s->trailing[i].end_mm, end_mm);
+            append(s, at_mm, feed_mm_s, s->trailing[i].a, leave);
         }
     }
     if (at_mm < end_mm) {
@@ -288,23 +291,24 @@ static unsigned block_overrides(const struct path_block *b)
 static bool continues(const struct builder *s, const struct path_block *b, float feed_mm_s,
                       double a)
 {
-    if (s->c->count == 0 || s->heads != 1 || s->head[0].a != a) {
+    if (s->c->count == 0 || s->trailing_count != 1 || s->trailing[0].a != a) {
         return false;
     }
     const struct ceiling_piece *last = &s->c->piece[s->c->count - 1];
 
     return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
            (double)last->acceleration == a &&
-           (double)ceiling_top_feed(s->c, s->c->count - 1) <= path_block_top(b) &&
-           ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
+           (double)takt_ceiling_top_feed(s->c, s->c->count - 1) <= takt_path_block_top(b) &&
+           takt_ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
 }
 
 static void lay_block(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const float feed_mm_s = maths_float_below(ceiling_block_feed(s->path, index, s->request));
-    const double top = path_block_top(b) * s->cycle_s;
-    const double a = ceiling_block_acceleration(s->path, index, s->cycles);
+    const float feed_mm_s =
+        takt_maths_float_below(takt_ceiling_block_feed(s->path, index, s->request));
+    const double top = takt_path_block_top(b) * s->cycle_s;
+    const double a = takt_ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
     const double behind_mm = path_whole_mm(top * s->behind);
@@ -318,10 +322,10 @@ static void lay_block(struct builder *s, uint32_t index)
     } else {
         s->early_mm = maths_max(s->early_mm, start_mm - behind_mm);
         begin_ceiling(s, start_mm, ceiling_feed(s->c, feed_mm_s) * s->behind);
-        lower(s, s->early_mm, path_block_top(b), a);
+        lower(s, s->early_mm, takt_path_block_top(b), a);
         append_pieces(s, end_mm, feed_mm_s, a, index + 1);
     }
-    add_head(s, a, end_mm + behind_mm);
+    add_trailing(s, a, end_mm + behind_mm);
 }
 
 /*
@@ -336,37 +340,39 @@ static double landing_ramp(double feed, double a, double window)
 }
 
 /*
- * A joint that is landed: the lead point passes it at constant feed for a whole window, so that a setpoint can be put
+ * A junction that is landed: the trapezoidal reference passes it at constant feed for a whole window, so that a setpoint can be put
  * on it; before that it makes up for the fraction of a cycle's way that is missing, and for the cycle in which it comes
- * into the piece. Two such joints need room between.
+ * into the piece. Two such junctions need room between.
  */
-static void lay_landed_joint(struct builder *s, uint32_t index)
+static void lay_landed_junction(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const double a = maths_min(ceiling_block_acceleration(s->path, index, s->cycles),
-                               ceiling_block_acceleration(s->path, index + 1, s->cycles));
+    const double a = maths_min(takt_ceiling_block_acceleration(s->path, index, s->cycles),
+                               takt_ceiling_block_acceleration(s->path, index + 1, s->cycles));
     const double window = 2.0 * (s->behind - CEILING_MARGIN_CYCLES) + 1.0;
     const double wider =
-        maths_max(window, law_window_cycles(s->path->limits.law, promise_window(s, index + 1)));
+        maths_max(window, takt_ramp_profile_window_cycles(s->path->limits.profile,
+                                                          promise_window(s, index + 1)));
     const double shorter_mm =
-        maths_min(path_length(s->path, index), path_length(s->path, index + 1));
+        maths_min(takt_path_length(s->path, index), takt_path_length(s->path, index + 1));
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
-    double feed = (double)b->feed_joint_mm_s * s->cycle_s;
+    double feed = (double)b->feed_junction_mm_s * s->cycle_s;
 
     feed = maths_min(feed, shorter_mm / (wider + 4.0 + landing_ramp(feed, a, wider)));
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
     s->start = index + 1;
-    struct ceiling_piece *p = append(s, end_mm, maths_float_below(feed / s->cycle_s), a, index + 1);
+    struct ceiling_piece *p =
+        append(s, end_mm, takt_maths_float_below(feed / s->cycle_s), a, index + 1);
 
     p->opens = true;
     p->landed = true;
 }
 
-/* For one block more: a piece for each head and one without, one of lower acceleration before, and a landed joint. */
+/* For one block more: a piece for each trailing limit and one without, one of lower acceleration before, and a landed junction. */
 static bool has_room(const struct builder *s)
 {
-    return s->c->count + s->heads + 3U <= CEILING_PIECES_MAX;
+    return s->c->count + s->trailing_count + 3U <= CEILING_PIECES_MAX;
 }
 
 /* Lays the blocks from the ring into pieces. */
@@ -383,13 +389,13 @@ static void lay_blocks(struct builder *s)
             begin_span(s, i);
         }
         lay_block(s, i);
-        const bool stops = span_stops(s->path, i);
+        const bool stops = takt_span_stops(s->path, i);
 
-        fresh = stops || span_lands(s->path, i);
+        fresh = stops || takt_span_lands(s->path, i);
         if (stops) {
             s->c->piece[s->c->count - 1].stop = true;
         } else if (fresh) {
-            lay_landed_joint(s, i);
+            lay_landed_junction(s, i);
         }
     }
     s->c->complete = i == s->path->closed;
@@ -401,18 +407,18 @@ static double square(double x)
 }
 
 /* Below this a square is 0, mm2/cycle2: what is above has all digits in single precision. */
-#define ENERGY_MIN 1e-30
+#define FEED_SQUARED_MIN 1e-30
 
 /* The feed of single precision whose square is not above a square, mm2/cycle2: three steps below the highest at most. */
-static float feed_below(const struct ceiling *c, double energy)
+static float feed_below(const struct ceiling *c, double feed_squared)
 {
-    float feed_mm_s = single_sqrt((float)energy) / (float)c->cycle_s;
+    float feed_mm_s = single_sqrt((float)feed_squared) / (float)c->cycle_s;
 
-    if (energy < ENERGY_MIN) {
+    if (feed_squared < FEED_SQUARED_MIN) {
         return 0.0F;
     }
-    while (square(ceiling_feed(c, feed_mm_s)) > energy) {
-        feed_mm_s = maths_float_below((double)feed_mm_s * (1.0 - 0x1p-25));
+    while (square(ceiling_feed(c, feed_mm_s)) > feed_squared) {
+        feed_mm_s = takt_maths_float_below((double)feed_mm_s * (1.0 - 0x1p-25));
     }
     return feed_mm_s;
 }
@@ -420,7 +426,7 @@ static float feed_below(const struct ceiling *c, double energy)
 /* Ceiling of a piece, and feed at its end: as the overrides are, or at their highest. */
 static float feed_of(const struct ceiling *c, uint32_t k, bool highest)
 {
-    return highest ? ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
+    return highest ? takt_ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
 }
 
 static float end_feed_of(const struct ceiling_piece *p, bool highest)
@@ -432,18 +438,20 @@ static float end_feed_of(const struct ceiling_piece *p, bool highest)
 static float begin_feed(const struct ceiling *c, uint32_t k, float feed_mm_s, float end_mm_s)
 {
     const double length_mm = c->end_mm[k] - (k == 0 ? 0.0 : c->end_mm[k - 1]);
-    const double energy =
+    const double feed_squared =
         square(ceiling_feed(c, end_mm_s)) + 2.0 * (double)c->piece[k].acceleration * length_mm;
 
-    return energy < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, energy) : feed_mm_s;
+    return feed_squared < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, feed_squared)
+                                                             : feed_mm_s;
 }
 
 /*
- * The feed up to feed at which the lead point, when the setpoint is on a landed joint, in piece k, can go on and meet
+ * The feed up to feed at which the trapezoidal reference, when the setpoint is on a landed junction, in piece k, can go on and meet
  * what follows: it is then half the next span's window ahead, at x; by the pieces up to there w is no more than their
  * ceilings, and w^2 <= u + 2 a (x_end - x).
  */
-static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool highest)
+static float landed_feed(const struct ceiling *c, uint32_t k, enum ramp_profile profile,
+                         bool highest)
 {
     const float feed_mm_s = c->piece[k].feed_mm_s;
     const double start_mm = c->end_mm[k];
@@ -453,7 +461,8 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
     if (i == c->count) {
         return feed_mm_s;
     }
-    const double cycles = 0.5 * (double)law_window_cycles(law, ceiling_cycles(c, i)) + 1.0;
+    const double cycles =
+        0.5 * (double)takt_ramp_profile_window_cycles(profile, takt_ceiling_cycles(c, i)) + 1.0;
     const double hold_mm = feed * cycles;
 
     while (i < c->count && c->end_mm[i] - start_mm < hold_mm) {
@@ -465,36 +474,36 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
         const struct ceiling_piece *p = &c->piece[i];
         const double a = (double)p->acceleration;
         const double m = a * cycles;
-        const double energy =
+        const double feed_squared =
             square(ceiling_feed(c, end_feed_of(p, highest))) + 2.0 * a * (c->end_mm[i] - start_mm);
 
         feed = maths_min(feed, ceiling_feed(c, feed_of(c, i, highest)));
-        feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, energy)) - m);
+        feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, feed_squared)) - m);
     }
-    return maths_float_below(feed / c->cycle_s);
+    return takt_maths_float_below(feed / c->cycle_s);
 }
 
-/* What the lead point may do in a piece from which feeds at its end are known; they become those at its beginning. */
-static void plan_piece(struct ceiling *c, uint32_t k, enum law law, float *feed_mm_s,
+/* What the trapezoidal reference may do in a piece from which feeds at its end are known; they become those at its beginning. */
+static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile, float *feed_mm_s,
                        float *max_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];
     const float end_mm_s = p->stop ? 0.0F : *feed_mm_s;
     const float end_max_mm_s = p->stop ? 0.0F : *max_mm_s;
-    float top_mm_s = ceiling_top_feed(c, k);
+    float top_mm_s = takt_ceiling_top_feed(c, k);
 
     p->end_feed_mm_s = end_mm_s;
     p->end_feed_max_mm_s = end_max_mm_s;
     if (p->landed) {
-        top_mm_s = landed_feed(c, k, law, true);
-        p->feed_mm_s = landed_feed(c, k, law, false);
+        top_mm_s = landed_feed(c, k, profile, true);
+        p->feed_mm_s = landed_feed(c, k, profile, false);
         p->end_feed_max_mm_s = top_mm_s;
     }
     *feed_mm_s = begin_feed(c, k, p->feed_mm_s, end_mm_s);
     *max_mm_s = begin_feed(c, k, top_mm_s, end_max_mm_s);
 }
 
-/* Between a piece and the joint that the span ends with: the pieces that ask for no more than any behind them. */
+/* Between a piece and the junction that the span ends with: the pieces that ask for no more than any behind them. */
 static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *low_max_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];
@@ -510,7 +519,7 @@ static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *l
     *low_max_mm_s = p->lowest_max ? p->end_feed_max_mm_s : *low_max_mm_s;
 }
 
-static void plan_backward(struct ceiling *c, enum law law)
+static void plan_backward(struct ceiling *c, enum ramp_profile profile)
 {
     float feed_mm_s = 0.0F;
     float max_mm_s = 0.0F;
@@ -527,12 +536,12 @@ static void plan_backward(struct ceiling *c, enum law law)
         open = open && !p->stop && (!p->landed || k + 1 == c->count);
         c->open_from = open ? k : c->open_from;
         p->landing = landing & CEILING_NONE;
-        plan_piece(c, k, law, &feed_mm_s, &max_mm_s);
+        plan_piece(c, k, profile, &feed_mm_s, &max_mm_s);
         note_lowest(c, k, &low_mm_s, &low_max_mm_s);
     }
 }
 
-void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
+void takt_ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
 {
     const double t = path->limits.cycle_s;
     struct builder s = {
@@ -544,7 +553,7 @@ void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_re
     c->origin = path_start(path, request->first);
     c->count = 0;
     lay_blocks(&s);
-    plan_backward(c, path->limits.law);
+    plan_backward(c, path->limits.profile);
 }
 
 /* Those before the oldest that is kept may have been overwritten. */
@@ -556,30 +565,31 @@ static uint32_t kept_block(const struct ceiling *c, unsigned block)
     return (int32_t)(index - kept) < 0 ? kept : index;
 }
 
-uint64_t ceiling_start(const struct ceiling *c, uint32_t k)
+uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k)
 {
     return path_start(c->path, kept_block(c, c->piece[k].start));
 }
 
-uint64_t ceiling_leave(const struct ceiling *c, uint32_t k)
+uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k)
 {
     return path_start(c->path, kept_block(c, c->piece[k].leave));
 }
 
-float ceiling_top_feed(const struct ceiling *c, uint32_t k)
+float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k)
 {
     const struct ceiling_piece *p = &c->piece[k];
 
     return p->landed ? p->feed_mm_s
-                     : maths_float_below(path_block_top(path_at(c->path, kept_block(c, p->start))));
+                     : takt_maths_float_below(
+                           takt_path_block_top(path_at(c->path, kept_block(c, p->start))));
 }
 
-unsigned ceiling_overrides(const struct ceiling *c, uint32_t k)
+unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k)
 {
     return block_overrides(path_at(c->path, kept_block(c, c->piece[k].leave - 1U)));
 }
 
-uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k)
+uint32_t takt_ceiling_cycles(const struct ceiling *c, uint32_t k)
 {
     return path_at(c->path, kept_block(c, c->piece[k].start))->cycles;
 }

@@ -1,14 +1,14 @@
 /*
- * The feed ceiling ahead: what the lead point may do where, made of blocks for one setting of the overrides.
+ * The feed ceiling ahead: what the trapezoidal reference may do where, made of blocks for one setting of the overrides.
  *
  *    feed |  ____                    ____________      pieces end to end, each with a ceiling, an acceleration and the
  *         |      \      ____________/            \     feed at its end from which everything after it can be met
  *         |       \____/                          \    (a line in feed squared: constant deceleration)
  *         +------------------------------------------> path position
  *
- * Positions are those of the lead point: a slow stretch begins for it as much earlier as the setpoint follows behind, at the
+ * Positions are those of the trapezoidal reference: a slow stretch begins for it as much earlier as the setpoint follows behind, at the
  * feed that the overrides allow; a lower acceleration counts from where the block's highest feed would begin on, so that no
- * override changes how hard the lead point may brake anywhere.
+ * override changes how hard the trapezoidal reference may brake anywhere.
  * Units here are mm and control cycles: feeds mm/cycle, accelerations mm/cycle2. See spans.md.
  */
 #ifndef TAKT_PLAN_CEILING_H
@@ -45,16 +45,17 @@ struct ceiling_piece {
     float feed_mm_s;     /* not above this in the piece, nor until the setpoint has left it */
     float acceleration;  /* mm/cycle2, also of braking */
     float end_feed_mm_s; /* at the end, from which all that follows can be met */
-    /* this at the highest override; of a landed joint the highest feed there */
+    /* this at the highest override; of a landed junction the highest feed there */
     float end_feed_max_mm_s;
     unsigned start : 9; /* block that it begins with, from the ceiling's first on */
     unsigned
         leave : 9; /* the one behind those of this feed, at whose start the setpoint leaves it */
-    unsigned landing : 9; /* first landed joint in or after it; CEILING_NONE: a stop comes first */
-    unsigned opens : 1;   /* what was not there before begins: a block, or the way to the joint */
-    unsigned stop : 1;    /* the span ends with this piece, where it is left */
-    unsigned landed : 1;  /* likewise, and a setpoint falls there in motion */
-    unsigned lowest : 1;  /* no end_feed is lower from here to the last but one before landing */
+    unsigned
+        landing : 9;    /* first landed junction in or after it; CEILING_NONE: a stop comes first */
+    unsigned opens : 1; /* what was not there before begins: a block, or the way to the junction */
+    unsigned stop : 1;  /* the span ends with this piece, where it is left */
+    unsigned landed : 1;     /* likewise, and a setpoint falls there in motion */
+    unsigned lowest : 1;     /* no end_feed is lower from here to the last but one before landing */
     unsigned lowest_max : 1; /* likewise end_feed_max */
 };
 
@@ -82,7 +83,7 @@ static inline double ceiling_feed(const struct ceiling *c, float feed_mm_s)
 /* What a ceiling is made for. */
 struct ceiling_request {
     uint32_t first;       /* block to begin with */
-    uint64_t lead;        /* where the lead point is */
+    uint64_t reference;   /* where the trapezoidal reference is */
     uint64_t span;        /* where the span starts that it has begun last */
     uint32_t cycles;      /* of the first averaging box in that span */
     double feed_ratio;    /* override of programmed feeds, 0 < ratio <= BLOCK_OVERRIDE_MAX */
@@ -93,31 +94,32 @@ struct ceiling_request {
 
 /*
  * The ceiling over the closed blocks of the path, from the first that is asked for on. It ends at rest. Notes the windows
- * of spans in their blocks: the lead point may begin a span under the ceiling that was made before.
+ * of spans in their blocks: the trapezoidal reference may begin a span under the ceiling that was made before.
  */
-void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request);
+void takt_ceiling_build(struct ceiling *c, struct path *path,
+                        const struct ceiling_request *request);
 
 /*
  * Control cycle: where on the path the setpoint comes to what a piece is made of, and where it leaves it. Of what it had
  * left when a ceiling was asked for last: where the block started that it was in.
  */
-uint64_t ceiling_start(const struct ceiling *c, uint32_t k);
-uint64_t ceiling_leave(const struct ceiling *c, uint32_t k);
+uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k);
+uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k);
 
 /* The highest feed whatever the overrides are, of what a piece begins with, mm/s. */
-float ceiling_top_feed(const struct ceiling *c, uint32_t k);
+float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k);
 
 /* Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is made of. */
-unsigned ceiling_overrides(const struct ceiling *c, uint32_t k);
+unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k);
 
 /* Cycles of the first averaging box in the span that begins with a piece. */
-uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k);
+uint32_t takt_ceiling_cycles(const struct ceiling *c, uint32_t k);
 
 /* Feed ceiling of one block under a request, mm/s. */
-double ceiling_block_feed(const struct path *path, uint32_t index,
-                          const struct ceiling_request *request);
+double takt_ceiling_block_feed(const struct path *path, uint32_t index,
+                               const struct ceiling_request *request);
 
-/* Acceleration of the lead point in it, by the first averaging box: A tau^2, or J tau^3 N; mm/cycle2, single precision. */
-double ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles);
+/* Acceleration of the trapezoidal reference in it, by the first averaging box: A tau^2, or J tau^3 N; mm/cycle2, single precision. */
+double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles);
 
 #endif

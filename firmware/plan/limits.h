@@ -5,11 +5,11 @@
 #define TAKT_PLAN_LIMITS_H
 
 #include "base/point.h"
-#include "plan/law.h"
+#include "plan/ramp_profile.h"
 
 /* Where a control cycle falls on the end of a block exactly. */
 enum landing {
-    LANDING_SPAN,  /* where spans end: stops, and joints that need a lower feed */
+    LANDING_SPAN,  /* where spans end: stops, and junctions that need a lower feed */
     LANDING_BLOCK, /* at every block's end, as the source has it */
     LANDING_SCALE /* likewise, by the source's factor kl on the feed: not planned here, but in classic/product.h */
 };
@@ -22,7 +22,7 @@ struct plan_limits {
     double cycle_s; /* control cycle */
     double
         chord_error_max_mm; /* largest deviation of the chord between two cycles from the curve */
-    enum law law;
+    enum ramp_profile profile;
     enum landing landing;
 };
 

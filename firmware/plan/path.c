@@ -2,16 +2,16 @@
 
 #include "base/handoff.h"
 #include "base/maths.h"
-#include "plan/joint.h"
+#include "plan/jerk_budget.h"
+#include "plan/junction.h"
 #include "plan/path_unit.h"
 #include "plan/scale.h"
-#include "plan/share.h"
 
 #include <assert.h>
 #include <stddef.h>
 #include <string.h>
 
-static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
+static_assert(JERK_BUDGET_BLOCKS_MAX <= PATH_MODES_MAX,
               "blocks that are not closed leave room for more, without which they never are");
 
 /* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
@@ -19,7 +19,8 @@ static void init_smooth(struct path *p)
 {
     struct smooth_limits limits = {.axes = p->limits.axes,
                                    .cycle_s = p->limits.cycle_s,
-                                   .windows = 0.5 + 0.5 * law_boxes(p->limits.law)};
+                                   .windows =
+                                       0.5 + 0.5 * takt_ramp_profile_boxes(p->limits.profile)};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits.velocity_mm_s[i] = p->limits.velocity_mm_s[i];
@@ -27,20 +28,20 @@ static void init_smooth(struct path *p)
         limits.jerk_mm_s3[i] = p->limits.jerk_mm_s3[i];
         p->unit_mm = maths_max(p->unit_mm, limits.velocity_mm_s[i]);
     }
-    smooth_init(&p->smooth, &limits);
+    takt_smooth_init(&p->smooth, &limits);
 }
 
-void path_init(struct path *p, const struct plan_limits *limits, const struct point *start)
+void takt_path_init(struct path *p, const struct plan_limits *limits, const struct point *start)
 {
     memset(p, 0, sizeof(*p));
     p->limits = *limits;
     p->end = *start;
-    p->ring.scale = scale_of_machine(limits);
+    p->ring.scale = takt_scale_of_machine(limits);
     init_smooth(p);
 }
 
 /* Where smoothing keeps its chain. */
-void *path_lend(struct path *p, size_t size)
+void *takt_path_lend(struct path *p, size_t size)
 {
     static_assert(offsetof(struct path, smooth.route) % sizeof(uint64_t) == 0,
                   "at a multiple of 8");
@@ -59,18 +60,18 @@ static bool is_splitting(const struct path *p)
 /* For a block whose record has size bytes at most. */
 static bool has_slot(const struct path *p, uint32_t size)
 {
-    return ring_has_room(&p->ring, handoff_get_count(&p->kept), p->pushed, size);
+    return takt_ring_has_room(&p->ring, handoff_get_count(&p->kept), p->pushed, size);
 }
 
-bool path_has_room(const struct path *p)
+bool takt_path_has_room(const struct path *p)
 {
     const uint64_t ahead = p->position - path_start(p, handoff_get_count(&p->kept));
 
     return has_slot(p, RECORD_SHORT_MAX) && !is_splitting(p) && !p->has_next &&
-           ahead < SCALE_LENGTH_UNITS && smooth_has_room(&p->smooth);
+           ahead < SCALE_LENGTH_UNITS && takt_smooth_has_room(&p->smooth);
 }
 
-uint32_t path_look_ahead(const struct path *p, uint32_t blocks)
+uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks)
 {
     return p->smooth.open && blocks < SMOOTH_AHEAD_PIECES ? SMOOTH_AHEAD_PIECES : blocks;
 }
@@ -81,46 +82,46 @@ static struct block *edge(struct path *p, uint32_t index)
     return &p->edge[index % 2];
 }
 
-double path_length(const struct path *p, uint32_t index)
+double takt_path_length(const struct path *p, uint32_t index)
 {
     return path_mm(path_at(p, index)->start, path_end(p, index));
 }
 
-enum move_kind path_kind(const struct path *p, uint32_t index)
+enum move_kind takt_path_kind(const struct path *p, uint32_t index)
 {
-    return record_kind(ring_record(&p->ring, index));
+    return takt_record_kind(ring_record(&p->ring, index));
 }
 
-double path_feed_rev(const struct path *p, uint32_t index)
+double takt_path_feed_rev(const struct path *p, uint32_t index)
 {
-    return record_feed_rev(ring_record(&p->ring, index));
+    return takt_record_feed_rev(ring_record(&p->ring, index));
 }
 
-void path_read_move(const struct path *p, uint32_t index, struct move *move)
+void takt_path_read_move(const struct path *p, uint32_t index, struct move *move)
 {
-    ring_read_move(&p->ring, index, move);
+    takt_ring_read_move(&p->ring, index, move);
 }
 
-void path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known)
+void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known)
 {
-    ring_promise(&p->ring, index, cycles, known);
+    takt_ring_promise(&p->ring, index, cycles, known);
 }
 
 /* Nothing joins the newest block: it ends at rest. */
 static void close_newest(struct path *p)
 {
     if (p->closed < p->pushed) {
-        joint_stop(edge(p, p->pushed - 1));
-        share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
-        share_close(p);
+        takt_junction_stop(edge(p, p->pushed - 1));
+        takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        takt_jerk_budget_close(p);
     }
 }
 
 /* control: of a piece of a smoothed curve, else NULL. */
 static void append(struct path *p, const struct block *b, const struct point control[4])
 {
-    ring_push(&p->ring, handoff_get_count(&p->kept), p->pushed, b, control);
-    share_begin(p, p->pushed, b);
+    takt_ring_push(&p->ring, handoff_get_count(&p->kept), p->pushed, b, control);
+    takt_jerk_budget_begin(p, p->pushed, b);
     handoff_set_count(&p->pushed, p->pushed + 1U);
     handoff_order(); /* until then position is the end of the block before */
     p->position += b->length;
@@ -131,7 +132,7 @@ static void push_wait(struct path *p, const struct move *move)
     struct block *b = edge(p, p->pushed);
 
     close_newest(p);
-    block_set_wait(b, move);
+    takt_block_set_wait(b, move);
     b->number = p->motions;
     b->start = p->position;
     append(p, b, NULL);
@@ -143,12 +144,12 @@ static void append_joined(struct path *p, struct block *b)
 {
     b->start = p->position;
     if (p->closed < p->pushed) {
-        joint_form(edge(p, p->pushed - 1), b, &p->limits);
-        share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        takt_junction_form(edge(p, p->pushed - 1), b, &p->limits);
+        takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
     }
     append(p, b, NULL);
     if (p->pushed - p->closed > 1) {
-        share_spread(p);
+        takt_jerk_budget_spread(p);
     }
 }
 
@@ -157,14 +158,14 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
 {
     struct block *b = edge(p, p->pushed);
 
-    block_set_motion(b, &p->split, curve, &p->limits);
+    takt_block_set_motion(b, &p->split, curve, &p->limits);
     b->number = p->motions;
     b->continues = to_mm < p->length_mm;
     append_joined(p, b);
     p->split_mm = to_mm;
 }
 
-/* Of the whole curve. At a cusp the axes stand. */
+/* Pushes pieces of the whole curve. At a cusp the axes stand. */
 static void push_pieces(struct path *p, const struct curve *whole)
 {
     const uint32_t size = whole->kind == CURVE_INVOLUTE || whole->kind == CURVE_QUINTIC
@@ -172,15 +173,15 @@ static void push_pieces(struct path *p, const struct curve *whole)
                               : RECORD_SHORT_MAX;
 
     while (is_splitting(p) && has_slot(p, size)) {
-        const double to_mm = curve_piece_end(whole, p->split_mm);
+        const double to_mm = takt_curve_piece_end(whole, p->split_mm);
         struct curve piece;
 
-        curve_cut(whole, p->split_mm, to_mm, &piece);
-        if (curve_starts_at_cusp(&piece)) {
+        takt_curve_cut(whole, p->split_mm, to_mm, &piece);
+        if (takt_curve_starts_at_cusp(&piece)) {
             close_newest(p);
         }
         push_piece(p, &piece, to_mm);
-        if (curve_ends_at_cusp(&piece)) {
+        if (takt_curve_ends_at_cusp(&piece)) {
             close_newest(p);
         }
     }
@@ -200,7 +201,7 @@ static void go_on_splitting(struct path *p)
 {
     struct curve whole;
 
-    if (is_splitting(p) && move_curve(&p->split, &p->from, &whole)) {
+    if (is_splitting(p) && takt_move_curve(&p->split, &p->from, &whole)) {
         push_pieces(p, &whole);
     }
 }
@@ -210,12 +211,12 @@ static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
 {
     struct block *b = edge(p, p->pushed);
 
-    block_set_smooth(b, piece, p->unit_mm);
+    takt_block_set_smooth(b, piece, p->unit_mm);
     b->start = p->position;
     if (p->smoothing) {
-        block_join_smooth(edge(p, p->pushed - 1), b);
-        share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
-        share_close(p);
+        takt_block_join_smooth(edge(p, p->pushed - 1), b);
+        takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        takt_jerk_budget_close(p);
     } else {
         close_newest(p);
     }
@@ -238,7 +239,7 @@ static void push_smooth_motion(struct path *p, const struct smooth_piece *piece,
     if (piece->starts) {
         close_newest(p);
     }
-    block_set_motion(b, piece->move, curve, &p->limits);
+    takt_block_set_motion(b, piece->move, curve, &p->limits);
     b->number = piece->number;
     b->continues = piece->continues;
     append_joined(p, b);
@@ -250,7 +251,7 @@ static bool push_smooth(struct path *p, union smooth_scratch *scratch)
     struct smooth_piece piece;
     struct curve curve;
 
-    switch (smooth_take(&p->smooth, scratch, &piece, &curve)) {
+    switch (takt_smooth_take(&p->smooth, scratch, &piece, &curve)) {
     case SMOOTH_NONE:
         return false;
     case SMOOTH_PIECE:
@@ -298,7 +299,8 @@ static bool is_divided(const struct path *p, const struct move *move)
     const struct move *newest = &p->edge[(p->pushed - 1) % 2].move;
 
     return p->closed < p->pushed &&
-           (newest->kind == MOVE_TAP_OUT || move_is_locked(newest) != move_is_locked(move) ||
+           (newest->kind == MOVE_TAP_OUT ||
+            move_is_synchronized(newest) != move_is_synchronized(move) ||
             (p->divides_rotary && turns_rotary(p, move) != p->newest_turns));
 }
 
@@ -315,12 +317,12 @@ static void push_move(struct path *p, const struct move *move)
     if (is_divided(p, move)) {
         close_newest(p);
     }
-    if (move_curve(move, &p->end, &curve)) {
+    if (takt_move_curve(move, &p->end, &curve)) {
         p->newest_turns = turns_rotary(p, move);
-        if (smooth_takes(move, &curve)) {
+        if (takt_smooth_takes(move, &curve)) {
             assert(!p->lent);
             p->end = move->end;
-            smooth_push(&p->smooth, move, p->motions, &curve);
+            takt_smooth_push(&p->smooth, move, p->motions, &curve);
             push_smooth_pieces(p);
         } else {
             push_motion(p, move, &curve);
@@ -336,7 +338,7 @@ static bool is_all_in_ring(const struct path *p)
     return !is_splitting(p) && !p->smooth.open && !p->has_next;
 }
 
-void path_go_on(struct path *p)
+void takt_path_go_on(struct path *p)
 {
     go_on_splitting(p);
     push_smooth_pieces(p);
@@ -349,7 +351,7 @@ void path_go_on(struct path *p)
     }
 }
 
-void path_restart(struct path *p, const struct point *at, uint64_t position)
+void takt_path_restart(struct path *p, const struct point *at, uint64_t position)
 {
     p->first = p->pushed;
     p->kept = p->pushed;
@@ -359,7 +361,7 @@ void path_restart(struct path *p, const struct point *at, uint64_t position)
     p->split_mm = p->length_mm;
     p->has_next = false;
     p->smoothing = false;
-    smooth_reset(&p->smooth);
+    takt_smooth_reset(&p->smooth);
 }
 
 /* May it be smoothed together with what is being smoothed? */
@@ -373,8 +375,8 @@ static bool joins_chain(const struct path *p, const struct move *move)
     if (!move_is_motion(move)) {
         return false;
     }
-    return !move_curve(move, &p->end, &curve) ||
-           (smooth_takes(move, &curve) && smooth_joins(&p->smooth, move));
+    return !takt_move_curve(move, &p->end, &curve) ||
+           (takt_smooth_takes(move, &curve) && takt_smooth_joins(&p->smooth, move));
 }
 
 /*
@@ -383,23 +385,23 @@ static bool joins_chain(const struct path *p, const struct move *move)
  */
 static void finish_chain(struct path *p)
 {
-    if (!smooth_is_line(&p->smooth)) {
-        smooth_finish(&p->smooth);
+    if (!takt_smooth_is_line(&p->smooth)) {
+        takt_smooth_finish(&p->smooth);
         return;
     }
     const struct move move = p->smooth.merge.move;
     const struct curve line = p->smooth.merge.curve;
 
-    smooth_reset(&p->smooth);
+    takt_smooth_reset(&p->smooth);
     close_newest(p);
     p->end = line.start;
     push_motion(p, &move, &line);
     close_newest(p);
 }
 
-void path_push(struct path *p, const struct move *move)
+void takt_path_push(struct path *p, const struct move *move)
 {
-    assert(path_has_room(p) && !p->finished);
+    assert(takt_path_has_room(p) && !p->finished);
     if (joins_chain(p, move)) {
         push_move(p, move);
         return;
@@ -407,17 +409,17 @@ void path_push(struct path *p, const struct move *move)
     finish_chain(p);
     p->has_next = true;
     p->split = *move;
-    path_go_on(p);
+    takt_path_go_on(p);
 }
 
-void path_finish(struct path *p)
+void takt_path_finish(struct path *p)
 {
     p->finished = true;
     finish_chain(p);
-    path_go_on(p);
+    takt_path_go_on(p);
 }
 
-void path_pass(struct path *p)
+void takt_path_pass(struct path *p)
 {
     assert(p->first != p->pushed);
     handoff_set_count(&p->first, p->first + 1U);

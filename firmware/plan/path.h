@@ -4,16 +4,16 @@
  *     push -> [ block | block | ... | block ] -> pass
  *
  * Only the background writes blocks, and count; only the cycle moves first. A block is closed, and seen by
- * others, when the joints at its end and near it are known: what is there has been pushed, or nothing will be.
+ * others, when the junctions at its end and near it are known: what is there has been pushed, or nothing will be.
  */
 #ifndef TAKT_PLAN_PATH_H
 #define TAKT_PLAN_PATH_H
 
 #include "plan/block.h"
 #include "plan/ceiling.h"
+#include "plan/jerk_budget.h"
 #include "plan/limits.h"
 #include "plan/ring.h"
-#include "plan/share.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -68,7 +68,7 @@ struct path {
     uint64_t position; /* likewise, on the path */
     struct block
         edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
-    struct share_block open[SHARE_BLOCKS_MAX]; /* those that are not closed */
+    struct jerk_budget_block open[JERK_BUDGET_BLOCKS_MAX]; /* those that are not closed */
     struct path_ring ring;
     struct smooth smooth; /* motions that are not in the ring yet: a chain being smoothed */
     union path_area area; /* of the ceiling in use and the next one */
@@ -77,28 +77,28 @@ struct path {
 };
 
 /* start: where the machine stands. */
-void path_init(struct path *p, const struct plan_limits *limits, const struct point *start);
+void takt_path_init(struct path *p, const struct plan_limits *limits, const struct point *start);
 /*
  * Memory for something else, at a multiple of 8, in a path that smooths nothing from here on: no move of PATH_BLEND comes
  * before it is initialised again. size: of that, PATH_LENT_MAX at most.
  */
 #define PATH_LENT_MAX (offsetof(struct smooth, change) - offsetof(struct smooth, route))
-void *path_lend(struct path *p, size_t size);
+void *takt_path_lend(struct path *p, size_t size);
 /* Room for one more move? */
-bool path_has_room(const struct path *p);
+bool takt_path_has_room(const struct path *p);
 /*
- * How many blocks there should be ahead where so many are asked for: pieces of a smoothed chain are not blocks of the
+ * How many blocks there should be ahead where this many are asked for: pieces of a smoothed chain are not blocks of the
  * program, and are needed to brake on.
  */
-uint32_t path_look_ahead(const struct path *p, uint32_t blocks);
+uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks);
 /* Appends the next move; a motion without length is counted and dropped. Needs room. */
-void path_push(struct path *p, const struct move *move);
+void takt_path_push(struct path *p, const struct move *move);
 /* Background: appends pieces of a long motion that had no room before. */
-void path_go_on(struct path *p);
+void takt_path_go_on(struct path *p);
 /* No more moves will come. Needs room: what waits to be joined to the next one is appended. */
-void path_finish(struct path *p);
+void takt_path_finish(struct path *p);
 /* Forgets every block: the axes have come to rest at a point, and what comes next starts there. */
-void path_restart(struct path *p, const struct point *at, uint64_t position);
+void takt_path_restart(struct path *p, const struct point *at, uint64_t position);
 /* Limits of the block with a number kept <= index < pushed. */
 static inline const struct path_block *path_at(const struct path *p, uint32_t index)
 {
@@ -113,17 +113,17 @@ static inline uint64_t path_end(const struct path *p, uint32_t index)
 {
     return path_start(p, index + 1);
 }
-double path_length(const struct path *p, uint32_t index);
+double takt_path_length(const struct path *p, uint32_t index);
 /* Ceiling 0 or 1. */
 static inline struct ceiling *path_ceiling(struct path *p, unsigned which)
 {
     return which == 0 ? &p->area.low.ceiling : &p->area.high.ceiling;
 }
-/* Of its move: what it is, and its feed per revolution, 0: none. */
-enum move_kind path_kind(const struct path *p, uint32_t index);
-double path_feed_rev(const struct path *p, uint32_t index);
+/* Kind of its move, and its feed per revolution, 0: none. */
+enum move_kind takt_path_kind(const struct path *p, uint32_t index);
+double takt_path_feed_rev(const struct path *p, uint32_t index);
 /* Its move, but for its feed: that is 0. */
-void path_read_move(const struct path *p, uint32_t index, struct move *move);
+void takt_path_read_move(const struct path *p, uint32_t index, struct move *move);
 /*
  * Control cycle: the whole block as it is executed, valid until the one two further on or two before is read. Of what its
  * limits are made of only feed_cap_mm_s and cap are filled.
@@ -131,13 +131,13 @@ void path_read_move(const struct path *p, uint32_t index, struct move *move);
 static inline const struct block *path_read(struct path *p, uint32_t index)
 {
     return ring_is_read(&p->ring, index) ? &p->ring.view[index % 2].block
-                                         : ring_read(&p->ring, index, path_end(p, index));
+                                         : takt_ring_read(&p->ring, index, path_end(p, index));
 }
 /* Control cycle: a step towards that, of a block that is closed; four make it ready. */
 static inline void path_prepare(struct path *p, uint32_t index)
 {
     if (!ring_is_read(&p->ring, index)) {
-        ring_prepare(&p->ring, index, path_end(p, index));
+        takt_ring_prepare(&p->ring, index, path_end(p, index));
     }
 }
 /* Control cycle: likewise the oldest one. */
@@ -146,8 +146,8 @@ static inline const struct block *path_first(struct path *p)
     return path_read(p, p->first);
 }
 /* Background: the averaging window that a span beginning with this block was planned with; known: to its end. */
-void path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known);
+void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known);
 /* The oldest block has been passed. */
-void path_pass(struct path *p);
+void takt_path_pass(struct path *p);
 
 #endif

@@ -46,19 +46,19 @@ static_assert(MOVE_END <= KIND_MASK && GOVERNOR_RAMP < 8, "both fit into a byte"
 
 /* -- numbers -- */
 
-bool record_is_same(const void *a, const void *b, size_t size)
+bool takt_record_is_same(const void *a, const void *b, size_t size)
 {
     return memcmp(a, b, size) == 0;
 }
 
 static bool is_same_number(double a, double b)
 {
-    return record_is_same(&a, &b, sizeof(a));
+    return takt_record_is_same(&a, &b, sizeof(a));
 }
 
 static bool is_same_point(const struct point *a, const struct point *b)
 {
-    return record_is_same(a, b, sizeof(*a));
+    return takt_record_is_same(a, b, sizeof(*a));
 }
 
 /* The coordinates that are not 0; returns which those are. */
@@ -98,7 +98,7 @@ static void take_point(const uint8_t **from, struct point *p)
 
 /* -- modes -- */
 
-void record_modes_of(const struct block *b, bool smooth, struct record_modes *modes)
+void takt_record_modes_of(const struct block *b, bool smooth, struct record_modes *modes)
 {
     const struct move *move = &b->move;
 
@@ -301,14 +301,14 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
 }
 
 /*
- * Of a piece of a smoothed curve: its control points. Which coordinates of a last one alone there are is said in place of
+ * Control points of a piece of a smoothed curve. Which coordinates of a last one alone there are is said in place of
  * those of an end, unless there is one.
  */
 static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point control[4],
                            struct record_chain *chain, bool has_end)
 {
     const bool chained =
-        chain->has_control && record_is_same(chain->control, control, sizeof(chain->control));
+        chain->has_control && takt_record_is_same(chain->control, control, sizeof(chain->control));
 
     if (chained && !has_end) {
         bytes[AT_END] = (uint8_t)put_coordinates(to, &control[3]);
@@ -346,8 +346,9 @@ static bool end_of(const struct block *b, bool spline, const struct record_chain
     return !spline || is_same_point(&b->curve.end, &b->move.end);
 }
 
-uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
-                      const struct point control[4], unsigned modes, struct record_chain *chain)
+uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
+                           const struct point control[4], unsigned modes,
+                           struct record_chain *chain)
 {
     const bool spline = control != NULL;
     unsigned flags = flags_of(b, spline, chain);
@@ -381,17 +382,17 @@ uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
 
 /* -- reading -- */
 
-enum move_kind record_kind(const uint8_t *record)
+enum move_kind takt_record_kind(const uint8_t *record)
 {
     return (enum move_kind)(record[AT_KIND] & KIND_MASK);
 }
 
-unsigned record_modes_number(const uint8_t *record)
+unsigned takt_record_modes_number(const uint8_t *record)
 {
     return record[AT_MODES];
 }
 
-void record_set_governor(uint8_t *record, enum governor governor)
+void takt_record_set_governor(uint8_t *record, enum governor governor)
 {
     record[AT_KIND] = (uint8_t)((record[AT_KIND] & KIND_MASK) | (unsigned)governor << KIND_BITS);
 }
@@ -426,7 +427,7 @@ static const uint8_t *behind_end(const uint8_t *record)
     return from;
 }
 
-double record_feed_rev(const uint8_t *record)
+double takt_record_feed_rev(const uint8_t *record)
 {
     const uint8_t *from = behind_end(record);
 
@@ -442,7 +443,7 @@ static const uint8_t *read_head(const uint8_t *record, const struct record_modes
 
     memset(move, 0, sizeof(*move));
     take_modes(modes, move);
-    move->kind = record_kind(record);
+    move->kind = takt_record_kind(record);
     move->line = (uint32_t)modes->line_high << 16 | bytes_take_half(&from);
     move->probe_away = (flags & FLAG_PROBE_AWAY) != 0;
     move->probe_optional = (flags & FLAG_PROBE_OPTIONAL) != 0;
@@ -454,7 +455,7 @@ static const uint8_t *read_head(const uint8_t *record, const struct record_modes
     return from;
 }
 
-/* Of a piece within a motion only the geometry knows where the motion ends. */
+/* For a piece within a motion only the geometry knows where the motion ends. */
 static void forget_end(struct move *move)
 {
     for (int i = 0; i < AXIS_COUNT; i++) {
@@ -462,7 +463,8 @@ static void forget_end(struct move *move)
     }
 }
 
-void record_read_move(const uint8_t *record, const struct record_modes *modes, struct move *move)
+void takt_record_read_move(const uint8_t *record, const struct record_modes *modes,
+                           struct move *move)
 {
     const uint8_t *from = read_head(record, modes, move);
 
@@ -473,8 +475,8 @@ void record_read_move(const uint8_t *record, const struct record_modes *modes, s
 }
 
 /*
- * Of so many control points the last ones, as a record of a piece has them: one, or up to four. Returns how many are still
- * missing before those.
+ * Reads the last of count control points, as a record of a piece has them: one, or up to four. Returns how many are
+ * still missing before those.
  */
 static unsigned read_control(const uint8_t *record, struct point control[], unsigned count)
 {
@@ -496,8 +498,8 @@ static unsigned read_control(const uint8_t *record, struct point control[], unsi
 }
 
 /* What it has not itself is found in the records before, back to one that has all. */
-void record_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                    struct point control[4])
+void takt_record_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                         struct point control[4])
 {
     unsigned missing = read_control(record, control, 4);
 
@@ -511,8 +513,8 @@ static void read_spline(const uint8_t *record, const uint8_t *const before[RECOR
 {
     struct point control[4];
 
-    record_control(record, before, control);
-    curve_set_spline(&b->curve, control, b->length_mm);
+    takt_record_control(record, before, control);
+    takt_curve_set_spline(&b->curve, control, b->length_mm);
     if ((record[AT_FLAGS] & FLAG_MOVE_END) != 0) {
         b->curve.end = b->move.end;
     } else {
@@ -540,8 +542,8 @@ static void read_motion(const uint8_t *record, const uint8_t *const before[RECOR
     b->curve.start = start;
 }
 
-const uint8_t *record_begin(const uint8_t *record, const struct record_modes *modes,
-                            struct block *b)
+const uint8_t *takt_record_begin(const uint8_t *record, const struct record_modes *modes,
+                                 struct block *b)
 {
     const uint8_t *number = record + AT_NUMBER;
 
@@ -551,8 +553,8 @@ const uint8_t *record_begin(const uint8_t *record, const struct record_modes *mo
     return read_head(record, modes, &b->move);
 }
 
-void record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                 const uint8_t *from, struct block *b)
+void takt_record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                      const uint8_t *from, struct block *b)
 {
     if (!move_is_motion(&b->move)) {
         memset(&b->move.end, 0, sizeof(b->move.end));
@@ -570,27 +572,27 @@ static bool is_arc(const uint8_t *record, const struct block *b)
     return (record[AT_FLAGS] & FLAG_SPLINE) == 0 && move_is_arc(&b->move);
 }
 
-bool record_begin_curve(const uint8_t *record, struct block *b)
+bool takt_record_begin_curve(const uint8_t *record, struct block *b)
 {
     const bool arc = is_arc(record, b);
 
     if (arc) {
         const struct point start = b->curve.start;
 
-        curve_begin_arc(&b->curve, &start, &b->move.end, b->move.plane, b->move.centre_mm);
+        takt_curve_begin_arc(&b->curve, &start, &b->move.end, b->move.plane, b->move.centre_mm);
     }
     return arc;
 }
 
 /* Motions of a spline's and involutes' shape have their curves already. */
-void record_finish(const uint8_t *record, struct block *b)
+void takt_record_finish(const uint8_t *record, struct block *b)
 {
     if (is_arc(record, b)) {
-        (void)curve_end_arc(&b->curve, b->move.kind == MOVE_ARC_CW, b->move.turns);
+        (void)takt_curve_end_arc(&b->curve, b->move.kind == MOVE_ARC_CW, b->move.turns);
     } else if ((record[AT_FLAGS] & FLAG_SPLINE) == 0 && move_is_motion(&b->move) &&
                !move_is_involute(&b->move)) {
         const struct point start = b->curve.start;
 
-        (void)move_curve(&b->move, &start, &b->curve);
+        (void)takt_move_curve(&b->move, &start, &b->curve);
     }
 }

@@ -20,10 +20,10 @@
 /* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 314. */
 #define RECORD_MAX 320
 
-/* Of what is no piece of an involute, of a spline or of a smoothed curve: an arc of six axes with start, end and turns takes 133. */
+/* Without pieces of involutes, splines and smoothed curves: an arc of six axes with start, end and turns takes 133. */
 #define RECORD_SHORT_MAX 136
 
-/* Control points that a piece shares with those before it: so many records back must be kept. */
+/* Control points that a piece shares with those before it: this many records back must be kept. */
 #define RECORD_BEFORE 3
 
 /* What many blocks in a row have in common. No padding: compared as bytes. */
@@ -43,10 +43,10 @@ struct record_modes {
 };
 
 /* The same bits? What is remade from a record is to be what it was, 0 and -0 too. Of what has no padding. */
-bool record_is_same(const void *a, const void *b, size_t size);
+bool takt_record_is_same(const void *a, const void *b, size_t size);
 
-/* Of a block; smooth: a piece of a smoothed curve. */
-void record_modes_of(const struct block *b, bool smooth, struct record_modes *modes);
+/* Modes of a block; smooth: it is a piece of a smoothed curve. */
+void takt_record_modes_of(const struct block *b, bool smooth, struct record_modes *modes);
 
 /* What the record before leaves for the next one. */
 struct record_chain {
@@ -60,18 +60,20 @@ struct record_chain {
  * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which number its
  * modes are kept. Returns the bytes it takes, <= RECORD_MAX, and tells what it leaves for the next one.
  */
-uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
-                      const struct point control[4], unsigned modes, struct record_chain *chain);
+uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
+                           const struct point control[4], unsigned modes,
+                           struct record_chain *chain);
 
 /* Parts of records that are needed alone. */
-enum move_kind record_kind(const uint8_t *record);
-unsigned record_modes_number(const uint8_t *record);
-/* Of path for a revolution; 0: the feed does not follow the spindle. */
-double record_feed_rev(const uint8_t *record);
-void record_set_governor(uint8_t *record, enum governor governor);
+enum move_kind takt_record_kind(const uint8_t *record);
+unsigned takt_record_modes_number(const uint8_t *record);
+/* Path for a revolution; 0: the feed does not follow the spindle. */
+double takt_record_feed_rev(const uint8_t *record);
+void takt_record_set_governor(uint8_t *record, enum governor governor);
 
 /* The move, but for its feed and what only planning needs: that is 0. */
-void record_read_move(const uint8_t *record, const struct record_modes *modes, struct move *move);
+void takt_record_read_move(const uint8_t *record, const struct record_modes *modes,
+                           struct move *move);
 
 /*
  * Number, move, curve, and what governs the feed of a block, in four parts, so that a control cycle need not do
@@ -79,14 +81,14 @@ void record_read_move(const uint8_t *record, const struct record_modes *modes, s
  * of the RECORD_BEFORE blocks before it, the nearest first; NULL where there is none. All else of the block stays as it
  * was.
  */
-const uint8_t *record_begin(const uint8_t *record, const struct record_modes *modes,
-                            struct block *b);
-void record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                 const uint8_t *from, struct block *b);
+const uint8_t *takt_record_begin(const uint8_t *record, const struct record_modes *modes,
+                                 struct block *b);
+void takt_record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                      const uint8_t *from, struct block *b);
 /* The control points of a piece of a smoothed curve. */
-void record_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                    struct point control[4]);
-bool record_begin_curve(const uint8_t *record, struct block *b);
-void record_finish(const uint8_t *record, struct block *b);
+void takt_record_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                         struct point control[4]);
+bool takt_record_begin_curve(const uint8_t *record, struct block *b);
+void takt_record_finish(const uint8_t *record, struct block *b);
 
 #endif

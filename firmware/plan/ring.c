@@ -7,10 +7,10 @@
 #include <string.h>
 
 static_assert(PATH_BYTES_MAX / PATH_BYTES_STEP <= 1 << 12, "places fit into path_block.record");
-static_assert(LAW_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
+static_assert(RAMP_PROFILE_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
 static_assert(sizeof(struct path_block) == 32, "no padding");
 
-double path_block_top(const struct path_block *b)
+double takt_path_block_top(const struct path_block *b)
 {
     return maths_min(BLOCK_OVERRIDE_MAX * (double)b->feed_program_mm_s, (double)b->feed_limit_mm_s);
 }
@@ -47,7 +47,7 @@ static unsigned free_modes(const struct path_ring *r, uint32_t kept)
     return k;
 }
 
-bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size)
+bool takt_ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size)
 {
     const uint32_t oldest = oldest_record(kept);
     const uint32_t tail =
@@ -60,13 +60,13 @@ bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, ui
 
 /* -- writing -- */
 
-/* Of the new modes, which are most often those of the newest block. */
+/* Place of the new modes, which are most often those of the newest block. */
 static unsigned find_modes(struct path_ring *r, uint32_t kept, const struct record_modes *modes)
 {
     unsigned k = r->modes_newest;
 
     for (unsigned i = 0; i < PATH_MODES_MAX; i++, k = (k + 1) % PATH_MODES_MAX) {
-        if (r->modes_used[k] != 0 && record_is_same(&r->modes[k], modes, sizeof(*modes))) {
+        if (r->modes_used[k] != 0 && takt_record_is_same(&r->modes[k], modes, sizeof(*modes))) {
             return k;
         }
     }
@@ -81,7 +81,7 @@ static unsigned push_modes(struct path_ring *r, uint32_t kept, uint32_t pushed,
 {
     struct record_modes modes;
 
-    record_modes_of(b, smooth, &modes);
+    takt_record_modes_of(b, smooth, &modes);
     r->modes_newest = find_modes(r, kept, &modes);
     r->modes_used[r->modes_newest] = pushed + 1;
     return r->modes_newest;
@@ -91,7 +91,7 @@ static uint32_t push_record(struct path_ring *r, const struct block *b,
                             const struct point control[4], unsigned modes)
 {
     uint8_t bytes[RECORD_MAX];
-    const uint32_t size = record_write(bytes, b, control, modes, &r->chain);
+    const uint32_t size = takt_record_write(bytes, b, control, modes, &r->chain);
     const uint32_t place = r->place + size <= PATH_BYTES_MAX ? r->place : 0;
 
     memcpy(&r->byte[place], bytes, size);
@@ -99,17 +99,17 @@ static uint32_t push_record(struct path_ring *r, const struct block *b,
     return place;
 }
 
-void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
-               const struct point control[4])
+void takt_ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
+                    const struct point control[4])
 {
-    assert(ring_has_room(r, kept, pushed, RECORD_SHORT_MAX));
+    assert(takt_ring_has_room(r, kept, pushed, RECORD_SHORT_MAX));
     const unsigned modes = push_modes(r, kept, pushed, b, control != NULL);
     const uint32_t place = push_record(r, b, control, modes);
     const unsigned may = b->move.overrides;
 
     r->block[pushed % PATH_BLOCKS_MAX] = (struct path_block){
         .start = b->start,
-        .feed_program_mm_s = maths_float_below(b->feed_program_mm_s),
+        .feed_program_mm_s = takt_maths_float_below(b->feed_program_mm_s),
         .record = (place / PATH_BYTES_STEP) & 0xfffU,
         .motion = block_is_motion(b),
         .rapid = b->move.kind == MOVE_RAPID,
@@ -121,28 +121,28 @@ void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct
     };
 }
 
-void ring_limit(struct path_ring *r, uint32_t index, const struct block *b)
+void takt_ring_limit(struct path_ring *r, uint32_t index, const struct block *b)
 {
     struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
     enum governor governor = GOVERNOR_PROGRAM;
-    const double limit_mm_s = block_limit(b, &governor);
+    const double limit_mm_s = takt_block_limit(b, &governor);
 
-    to->feed_limit_mm_s = maths_float_below(limit_mm_s);
-    to->a_mm_s2 = maths_float_below(b->a_mm_s2);
-    to->j_mm_s3 = maths_float_below(b->j_mm_s3);
-    record_set_governor(&r->byte[(size_t)to->record * PATH_BYTES_STEP], governor);
+    to->feed_limit_mm_s = takt_maths_float_below(limit_mm_s);
+    to->a_mm_s2 = takt_maths_float_below(b->a_mm_s2);
+    to->j_mm_s3 = takt_maths_float_below(b->j_mm_s3);
+    takt_record_set_governor(&r->byte[(size_t)to->record * PATH_BYTES_STEP], governor);
 }
 
-void ring_join(struct path_ring *r, uint32_t index, const struct block *b)
+void takt_ring_join(struct path_ring *r, uint32_t index, const struct block *b)
 {
     struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
 
-    to->feed_joint_mm_s = maths_float_below(b->feed_joint_mm_s);
+    to->feed_junction_mm_s = takt_maths_float_below(b->feed_junction_mm_s);
     to->end = (unsigned)b->end & 3U;
     to->continues = b->continues;
 }
 
-void ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, bool known)
+void takt_ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, bool known)
 {
     struct path_block *b = &r->block[index % PATH_BLOCKS_MAX];
 
@@ -154,12 +154,12 @@ void ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, bool kno
 
 static const struct record_modes *modes_of(const struct path_ring *r, uint32_t index)
 {
-    return &r->modes[record_modes_number(ring_record(r, index))];
+    return &r->modes[takt_record_modes_number(ring_record(r, index))];
 }
 
-void ring_read_move(const struct path_ring *r, uint32_t index, struct move *move)
+void takt_ring_read_move(const struct path_ring *r, uint32_t index, struct move *move)
 {
-    record_read_move(ring_record(r, index), modes_of(r, index), move);
+    takt_record_read_move(ring_record(r, index), modes_of(r, index), move);
 }
 
 static void read_limits(const struct path_block *from, uint64_t end, struct block *b)
@@ -168,11 +168,11 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->length = from->motion ? end - from->start : 0;
     b->feed_program_mm_s = (double)from->feed_program_mm_s;
     b->feed_cap_mm_s = (double)from->feed_limit_mm_s;
-    b->feed_max_mm_s = path_block_top(from);
+    b->feed_max_mm_s = takt_path_block_top(from);
     b->a_mm_s2 = (double)from->a_mm_s2;
     b->j_mm_s3 = (double)from->j_mm_s3;
-    b->feed_joint_mm_s = (double)from->feed_joint_mm_s;
-    b->end = (enum joint_kind)from->end;
+    b->feed_junction_mm_s = (double)from->feed_junction_mm_s;
+    b->end = (enum junction_kind)from->end;
     b->rotary = from->rotary;
     b->continues = from->continues;
 }
@@ -185,12 +185,12 @@ static void find_before(const struct path_ring *r, uint32_t index,
     }
 }
 
-void ring_control(const struct path_ring *r, uint32_t index, struct point control[4])
+void takt_ring_control(const struct path_ring *r, uint32_t index, struct point control[4])
 {
     const uint8_t *before[RECORD_BEFORE];
 
     find_before(r, index, before);
-    record_control(ring_record(r, index), before, control);
+    takt_record_control(ring_record(r, index), before, control);
 }
 
 static void take(struct path_ring *r, uint32_t index, struct path_view *view)
@@ -198,7 +198,7 @@ static void take(struct path_ring *r, uint32_t index, struct path_view *view)
     const uint8_t *before[RECORD_BEFORE];
 
     find_before(r, index, before);
-    record_take(ring_record(r, index), before, view->from, &view->block);
+    takt_record_take(ring_record(r, index), before, view->from, &view->block);
 }
 
 static enum view_state finish(const struct path_ring *r, uint32_t index, uint64_t end,
@@ -206,21 +206,21 @@ static enum view_state finish(const struct path_ring *r, uint32_t index, uint64_
 {
     struct block *b = &view->block;
 
-    record_finish(ring_record(r, index), b);
-    b->scale = scale_of_curve(&b->curve, &r->scale);
+    takt_record_finish(ring_record(r, index), b);
+    b->scale = takt_scale_of_curve(&b->curve, &r->scale);
     b->length_mm = b->curve.length_mm / b->scale;
     read_limits(ring_at(r, index), end, b);
     return VIEW_READ;
 }
 
-void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
+void takt_ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
 {
     struct path_view *view = &r->view[index % 2];
     const uint8_t *record = ring_record(r, index);
 
     switch (view->index == index ? view->state : VIEW_EMPTY) {
     case VIEW_EMPTY:
-        view->from = record_begin(record, modes_of(r, index), &view->block);
+        view->from = takt_record_begin(record, modes_of(r, index), &view->block);
         view->state = VIEW_BEGUN;
         view->index = index;
         break;
@@ -229,8 +229,8 @@ void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
         view->state = VIEW_TAKEN;
         break;
     case VIEW_TAKEN:
-        view->state =
-            record_begin_curve(record, &view->block) ? VIEW_CURVED : finish(r, index, end, view);
+        view->state = takt_record_begin_curve(record, &view->block) ? VIEW_CURVED
+                                                                    : finish(r, index, end, view);
         break;
     case VIEW_CURVED:
         view->state = finish(r, index, end, view);
@@ -240,10 +240,10 @@ void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
     }
 }
 
-const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end)
+const struct block *takt_ring_read(struct path_ring *r, uint32_t index, uint64_t end)
 {
     while (!ring_is_read(r, index)) {
-        ring_prepare(r, index, end);
+        takt_ring_prepare(r, index, end);
     }
     return &r->view[index % 2].block;
 }

@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 /*
- * Blocks in the ring: the look-ahead of 256, those between the setpoint and the lead point that runs ahead of it
+ * Blocks in the ring: the look-ahead of 256, those between the setpoint and the trapezoidal reference that runs ahead of it
  * (firmware/motion), both ends included, and RECORD_BEFORE that have been passed.
  */
 #define PATH_BLOCKS_MAX 320
@@ -26,7 +26,7 @@
 /* Records begin at multiples of this. */
 #define PATH_BYTES_STEP 4
 
-/* So many different modes may be in the ring at the same time: one for each block that is not closed, at least (path.h). */
+/* Different modes that may be in the ring at once: one for each block that is not closed, at least (path.h). */
 #define PATH_MODES_MAX 28
 
 /*
@@ -37,14 +37,14 @@ struct path_block {
     uint64_t start;          /* path position, path units (path_unit.h) */
     float feed_program_mm_s; /* as programmed; infinite for a rapid */
     float feed_limit_mm_s;   /* never exceeded, whatever is programmed and the override */
-    float a_mm_s2; /* along the path, what curvature and share leave at the highest feed */
+    float a_mm_s2; /* along the path, what curvature and jerk budget leave at the highest feed */
     float j_mm_s3;
-    float feed_joint_mm_s; /* highest feed at which the joint at the end may be passed */
-    unsigned record : 12;  /* where it is, in PATH_BYTES_STEP */
+    float feed_junction_mm_s; /* highest feed at which the junction at the end may be passed */
+    unsigned record : 12;     /* where it is, in PATH_BYTES_STEP */
     unsigned
         cycles : 9; /* averaging window of the span that begins here, as planned last; 0: not yet */
     unsigned cycles_known : 1; /* found with all of the span known */
-    unsigned end : 2;          /* enum joint_kind */
+    unsigned end : 2;          /* enum junction_kind */
     unsigned motion : 1;       /* else a wait, the axes stand */
     unsigned rapid : 1;
     unsigned continues : 1;      /* another piece of the same move follows */
@@ -80,18 +80,18 @@ struct path_ring {
 };
 
 /* Room for one more block, whose record has size bytes at most? Blocks kept <= index < pushed are kept. */
-bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size);
+bool takt_ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size);
 
 /* Writes block b, the one of number pushed. Needs room. control: of a piece of a smoothed curve, else NULL. */
-void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
-               const struct point control[4]);
+void takt_ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
+                    const struct point control[4]);
 
 /* Notes limits of a block: of feed, acceleration and jerk; and of its end. */
-void ring_limit(struct path_ring *r, uint32_t index, const struct block *b);
-void ring_join(struct path_ring *r, uint32_t index, const struct block *b);
+void takt_ring_limit(struct path_ring *r, uint32_t index, const struct block *b);
+void takt_ring_join(struct path_ring *r, uint32_t index, const struct block *b);
 
 /* The window of the span that begins with a block; known: found with all of it known. */
-void ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, bool known);
+void takt_ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, bool known);
 
 static inline const struct path_block *ring_at(const struct path_ring *r, uint32_t index)
 {
@@ -104,7 +104,7 @@ static inline const uint8_t *ring_record(const struct path_ring *r, uint32_t ind
 }
 
 /* The move of a block, but for its feed: that is 0. */
-void ring_read_move(const struct path_ring *r, uint32_t index, struct move *move);
+void takt_ring_read_move(const struct path_ring *r, uint32_t index, struct move *move);
 
 /* Is a block ready to be executed? */
 static inline bool ring_is_read(const struct path_ring *r, uint32_t index)
@@ -115,14 +115,14 @@ static inline bool ring_is_read(const struct path_ring *r, uint32_t index)
 }
 
 /* Makes it so: limits, move and curve. Control cycle alone. end: its end on the path, path units. */
-const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end);
+const struct block *takt_ring_read(struct path_ring *r, uint32_t index, uint64_t end);
 /* The next part of that, for a cycle that has no time for all: four at most. */
-void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end);
+void takt_ring_prepare(struct path_ring *r, uint32_t index, uint64_t end);
 
 /* The control points of a block that is a piece of a smoothed curve. */
-void ring_control(const struct path_ring *r, uint32_t index, struct point control[4]);
+void takt_ring_control(const struct path_ring *r, uint32_t index, struct point control[4]);
 
 /* The highest feed whatever the override, mm/s. */
-double path_block_top(const struct path_block *b);
+double takt_path_block_top(const struct path_block *b);
 
 #endif

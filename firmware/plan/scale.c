@@ -5,16 +5,16 @@
 
 /*
  * Rounding changes the second and third differences of setpoints by 2 units, and by two and three times 8 where one so near to
- * an end is put on it (motion/motion.c): with so many units in the least A tau^2 and J tau^3 that is less than 1/14,000 of the
- * acceleration limit, and 1/2048 of the jerk limit.
+ * an end is put on it (motion/motion.c): with this many units in the least A tau^2 and J tau^3 that is less than
+ * 1/14,000 of the acceleration limit, and 1/2048 of the jerk limit.
  */
 #define ACCELERATION_UNITS 262144.0
 #define JERK_UNITS         65536.0
 
-/* The sums of the averages: product of the boxes times the way between lead point and setpoint. */
+/* The sums of the averages: product of the boxes times the way between trapezoidal reference and setpoint. */
 #define SUM_UNITS 9223372036854775808.0
 
-/* Of one block: with what is ahead of it (path.c) differences of positions stay within 63 bits. */
+/* Units of one block at most: with what is ahead of it (path.c) differences of positions stay within 63 bits. */
 #define LENGTH_UNITS 2305843009213693952.0
 
 /* The bits of the linear axes, and of the rotary ones. */
@@ -49,17 +49,17 @@ static double least_units(const struct plan_limits *limits, unsigned axes)
     return least * PATH_UNITS_PER_MM;
 }
 
-/* Likewise in the largest sum: the lead point is half a window ahead. */
+/* Likewise in the largest sum: the trapezoidal reference is half a window ahead. */
 static double largest_sum(const struct plan_limits *limits, unsigned axes)
 {
-    const uint32_t cycles = law_cycles_max(limits->law);
+    const uint32_t cycles = takt_ramp_profile_cycles_max(limits->profile);
     double product = 1.0;
 
-    for (unsigned i = 0; i < law_boxes(limits->law); i++) {
-        product *= (double)law_box_cycles(i, cycles);
+    for (unsigned i = 0; i < takt_ramp_profile_boxes(limits->profile); i++) {
+        product *= (double)takt_ramp_profile_box_cycles(i, cycles);
     }
-    return 0.5 * (double)law_window_cycles(limits->law, cycles) * product * PATH_UNITS_PER_MM *
-           fastest(limits, axes);
+    return 0.5 * (double)takt_ramp_profile_window_cycles(limits->profile, cycles) * product *
+           PATH_UNITS_PER_MM * fastest(limits, axes);
 }
 
 static double scale_of_axes(const struct plan_limits *limits, unsigned axes)
@@ -77,7 +77,7 @@ static double scale_of_axes(const struct plan_limits *limits, unsigned axes)
     return scale;
 }
 
-struct scale scale_of_machine(const struct plan_limits *limits)
+struct scale takt_scale_of_machine(const struct plan_limits *limits)
 {
     return (struct scale){
         .linear = scale_of_axes(limits, LINEAR),
@@ -99,7 +99,7 @@ static double turning_square(const struct curve *c)
 }
 
 /* A smoothed curve counts its nominal time (block.c). */
-double scale_of_curve(const struct curve *c, const struct scale *machine)
+double takt_scale_of_curve(const struct curve *c, const struct scale *machine)
 {
     if (c->kind == CURVE_SPLINE) {
         return 1.0;

@@ -19,7 +19,10 @@
 
 #include <stdint.h>
 
-/* Path units of a curve at most. No more are appended to so many: differences of positions stay within 63 bits. */
+/*
+ * Path units of a curve at most. With this many ahead nothing is appended: differences of positions stay within 63
+ * bits.
+ */
 #define SCALE_LENGTH_UNITS (UINT64_C(1) << 61)
 
 /*
@@ -30,9 +33,9 @@ struct scale {
     double linear, rotary;
 };
 
-struct scale scale_of_machine(const struct plan_limits *limits);
+struct scale takt_scale_of_machine(const struct plan_limits *limits);
 
 /* The scale of a curve on a machine. */
-double scale_of_curve(const struct curve *c, const struct scale *machine);
+double takt_scale_of_curve(const struct curve *c, const struct scale *machine);
 
 #endif

@@ -1,19 +1,19 @@
 /*
- * Goal: the averaging window with which a span takes the least time, without running the lead point through it.
+ * Goal: the averaging window with which a span takes the least time, without running the trapezoidal reference through it.
  *
- * A long window lets ramps reach a high acceleration; with a short one the lead point comes later to a slow block,
+ * A long window lets ramps reach a high acceleration; with a short one the trapezoidal reference comes later to a slow block,
  * leaves it earlier, and waits less between speeding up and slowing down. For some windows the time is predicted, by
- * parts of equal limits laid where the lead point feels them. With N the first box, W the whole window, h = (W - 1)/2,
+ * parts of equal limits laid where the trapezoidal reference feels them. With N the first box, W the whole window, h = (W - 1)/2,
  * c a feed a cycle:
  *
  *     feed |   ______ c1             into a slower part   h + 2 cycles before it, at that part's feed:  c2 (h + 2)
  *          |         |        ____   out of it            h cycles behind it:                           c2 h
  *          |         |_______|       a = min(A, J N)
- *          +---------+-------+----> lead point
+ *          +---------+-------+----> trapezoidal reference
  *
  * Feed squared where parts begin is what both ends of the span and all ceilings allow, backwards and then forwards:
  * u = min(c^2, u_next + 2 a L). Where the feed rises and falls again without being kept for W cycles, the peak is lower:
- * W q = l + (p^2 - q^2)/a, l the way at the old peak p, q the new one. A stop is come to W - 1 cycles after the lead point.
+ * W q = l + (p^2 - q^2)/a, l the way at the old peak p, q the new one. A stop is come to W - 1 cycles after the trapezoidal reference.
  *
  * Each window costs one step for each part. Rejected: to lay the pieces of the ceiling themselves for each window (ten
  * times the cost, and no better choice); the window of the fastest block for all (up to 17 % slower).
@@ -44,7 +44,7 @@ struct part {
 
 struct span {
     double cycle_s;
-    enum law law;
+    enum ramp_profile profile;
     double feed_start;
     double feed_end;
     bool known; /* the parts reach to its end, */
@@ -53,12 +53,12 @@ struct span {
     struct part part[PARTS_MAX];
 };
 
-/* A part where the lead point feels it. */
+/* A part where the trapezoidal reference feels it. */
 struct laid {
     const struct part *part;
-    double from_mm; /* the way of the lead point from the start of the span */
+    double from_mm; /* the way of the trapezoidal reference from the start of the span */
     double a;
-    double energy; /* feed squared there */
+    double feed_squared; /* feed squared there */
 };
 
 struct trial {
@@ -66,22 +66,22 @@ struct trial {
     double box;    /* N */
     double window; /* W */
     double behind; /* h */
-    double end_mm; /* where the lead point ends */
+    double end_mm; /* where the trapezoidal reference ends */
     unsigned count;
     struct laid laid[PARTS_MAX];
 };
 
-bool span_stops(const struct path *path, uint32_t index)
+bool takt_span_stops(const struct path *path, uint32_t index)
 {
-    return path_at(path, index)->end == JOINT_STOP;
+    return path_at(path, index)->end == JUNCTION_STOP;
 }
 
-bool span_lands(const struct path *path, uint32_t index)
+bool takt_span_lands(const struct path *path, uint32_t index)
 {
     const struct path_block *b = path_at(path, index);
 
-    return b->end == JOINT_REDUCED ||
-           (b->end == JOINT_PASSED && path->limits.landing == LANDING_BLOCK && !b->smooth);
+    return b->end == JUNCTION_REDUCED ||
+           (b->end == JUNCTION_PASSED && path->limits.landing == LANDING_BLOCK && !b->smooth);
 }
 
 /* -- the parts of a span -- */
@@ -93,8 +93,8 @@ static bool add_block(struct span *s, const struct path *path, uint32_t index,
     const struct path_block *b = path_at(path, index);
     const double t = s->cycle_s;
     struct part part = {
-        .end_mm = path_length(path, index),
-        .feed = ceiling_block_feed(path, index, asked) * t,
+        .end_mm = takt_path_length(path, index),
+        .feed = takt_ceiling_block_feed(path, index, asked) * t,
         .a = (double)b->a_mm_s2 * t * t,
         .j = (double)b->j_mm_s3 * t * t * t,
     };
@@ -129,24 +129,24 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
             !add_block(s, path, index, &asked) || index == path->closed) {
             return;
         }
-        s->stops = span_stops(path, index);
-        s->known = s->stops || span_lands(path, index);
-        s->feed_end = s->stops ? 0.0 : (double)b->feed_joint_mm_s * s->cycle_s;
+        s->stops = takt_span_stops(path, index);
+        s->known = s->stops || takt_span_lands(path, index);
+        s->feed_end = s->stops ? 0.0 : (double)b->feed_junction_mm_s * s->cycle_s;
     }
 }
 
-/* Feed at which the span begins: of the joint before it, or rest. */
+/* Feed at which the span begins: of the junction before it, or rest. */
 static double feed_at_start(const struct path *path, const struct ceiling_request *request,
                             uint32_t index)
 {
-    return index == request->first || span_stops(path, index - 1)
+    return index == request->first || takt_span_stops(path, index - 1)
                ? 0.0
-               : (double)path_at(path, index - 1)->feed_joint_mm_s * path->limits.cycle_s;
+               : (double)path_at(path, index - 1)->feed_junction_mm_s * path->limits.cycle_s;
 }
 
 /* -- the time it takes with a window -- */
 
-/* Where a part begins for the lead point, behind a part laid before. */
+/* Where a part begins for the trapezoidal reference, behind a part laid before. */
 static double part_begin(const struct trial *t, const struct part *before, const struct part *part)
 {
     const double early = part[-1].end_mm - part->feed * (t->behind + MARGIN);
@@ -155,7 +155,7 @@ static double part_begin(const struct trial *t, const struct part *before, const
                                      : maths_max(early, before->end_mm + before->feed * t->behind);
 }
 
-/* Lays the parts for the lead point; one that others cover, up to the end or in between, is left out. */
+/* Lays the parts for the trapezoidal reference; one that others cover, up to the end or in between, is left out. */
 static void lay_parts(struct trial *t)
 {
     const struct span *s = t->span;
@@ -186,7 +186,7 @@ static double square(double x)
     return x * x;
 }
 
-/* The way of the lead point through what is laid. */
+/* The way of the trapezoidal reference through what is laid. */
 static double laid_length(const struct trial *t, unsigned k)
 {
     const double to_mm = k + 1 == t->count ? t->end_mm : t->laid[k + 1].from_mm;
@@ -195,38 +195,40 @@ static double laid_length(const struct trial *t, unsigned k)
 }
 
 /* Feed squared at the end of the span, if the ceilings and the way to it allow. */
-static double last_energy(const struct trial *t)
+static double last_feed_squared(const struct trial *t)
 {
     const struct laid *last = &t->laid[t->count - 1];
     const double ceiling = square(last->part->feed);
     const double asked = t->span->known ? maths_min(ceiling, square(t->span->feed_end)) : ceiling;
 
-    return maths_min(asked, last->energy + 2.0 * last->a * laid_length(t, t->count - 1));
+    return maths_min(asked, last->feed_squared + 2.0 * last->a * laid_length(t, t->count - 1));
 }
 
 static void plan_energies(struct trial *t)
 {
-    double energy = t->span->known ? square(t->span->feed_end) : MATHS_INFINITY;
+    double feed_squared = t->span->known ? square(t->span->feed_end) : MATHS_INFINITY;
 
     for (unsigned k = t->count; k-- > 0;) {
         struct laid *p = &t->laid[k];
         const double ceiling = square(p->part->feed);
 
-        energy = maths_min(ceiling, maths_min(energy, ceiling) + 2.0 * p->a * laid_length(t, k));
-        p->energy = energy;
+        feed_squared =
+            maths_min(ceiling, maths_min(feed_squared, ceiling) + 2.0 * p->a * laid_length(t, k));
+        p->feed_squared = feed_squared;
     }
-    energy = square(t->span->feed_start);
+    feed_squared = square(t->span->feed_start);
     for (unsigned k = 0; k < t->count; k++) {
         struct laid *p = &t->laid[k];
 
-        p->energy = maths_min(p->energy, energy);
-        energy = maths_min(square(p->part->feed), p->energy + 2.0 * p->a * laid_length(t, k));
+        p->feed_squared = maths_min(p->feed_squared, feed_squared);
+        feed_squared =
+            maths_min(square(p->part->feed), p->feed_squared + 2.0 * p->a * laid_length(t, k));
     }
 }
 
 struct walk {
     double cycles; /* so far */
-    bool rose;     /* and has kept its feed since for so many mm */
+    bool rose;     /* and has kept its feed since for kept_mm */
     double kept_mm;
 };
 
@@ -245,10 +247,11 @@ static void pass_part(struct walk *w, const struct trial *t, unsigned k)
 {
     const struct laid *p = &t->laid[k];
     const double length_mm = laid_length(t, k);
-    const double end_energy = k + 1 == t->count ? last_energy(t) : t->laid[k + 1].energy;
-    const double both = p->energy + end_energy;
-    const double from = maths_sqrt(p->energy);
-    const double to = maths_sqrt(end_energy);
+    const double end_feed_squared =
+        k + 1 == t->count ? last_feed_squared(t) : t->laid[k + 1].feed_squared;
+    const double both = p->feed_squared + end_feed_squared;
+    const double from = maths_sqrt(p->feed_squared);
+    const double to = maths_sqrt(end_feed_squared);
     const double peak = maths_min(p->part->feed, maths_sqrt(0.5 * both + p->a * length_mm));
     const double kept_mm = maths_max(0.0, length_mm - (2.0 * peak * peak - both) / (2.0 * p->a));
 
@@ -269,10 +272,10 @@ static void pass_part(struct walk *w, const struct trial *t, unsigned k)
     }
 }
 
-/* Cycles that the span takes with a first box of so many. */
+/* Cycles that the span takes with a first box of this many. */
 static double predict(const struct span *s, uint32_t box)
 {
-    const double window = (double)law_window_cycles(s->law, box);
+    const double window = (double)takt_ramp_profile_window_cycles(s->profile, box);
     const double behind = 0.5 * (window - 1.0);
     struct walk walk = {.cycles = s->known && s->stops ? window - 1.0 : 0.0};
     struct trial t = {
@@ -309,10 +312,10 @@ static uint32_t longest_box(const struct span *s)
         j = maths_min(j, p->j);
     }
     if (s->known) {
-        cycles = maths_min(cycles, maths_cbrt(s->part[s->count - 1].end_mm / (2.0 * j)));
+        cycles = maths_min(cycles, takt_maths_cbrt(s->part[s->count - 1].end_mm / (2.0 * j)));
     }
-    return (uint32_t)maths_clamp(maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
-                                 law_cycles_max(s->law));
+    return (uint32_t)maths_clamp(takt_maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
+                                 takt_ramp_profile_cycles_max(s->profile));
 }
 
 /*
@@ -331,7 +334,8 @@ static uint32_t best_box(const struct span *s)
     uint32_t best = longest;
 
     for (unsigned i = 0; i < sizeof(shorter) / sizeof(shorter[0]); i++) {
-        const uint32_t box = (uint32_t)maths_max(1.0, maths_round(shorter[i] * (double)longest));
+        const uint32_t box =
+            (uint32_t)maths_max(1.0, takt_maths_round(shorter[i] * (double)longest));
         const double cycles = predict(s, box);
 
         if (cycles < least) {
@@ -342,10 +346,10 @@ static uint32_t best_box(const struct span *s)
     return best;
 }
 
-struct span_window span_window(const struct path *path, const struct ceiling_request *request,
-                               uint32_t index)
+struct span_window takt_span_window(const struct path *path, const struct ceiling_request *request,
+                                    uint32_t index)
 {
-    struct span s = {.cycle_s = path->limits.cycle_s, .law = path->limits.law};
+    struct span s = {.cycle_s = path->limits.cycle_s, .profile = path->limits.profile};
 
     survey(&s, path, request, index);
     s.feed_start = maths_min(feed_at_start(path, request, index), s.part[0].feed);

@@ -10,7 +10,7 @@
 
 #define SECONDS_PER_MINUTE 60.0
 
-void approach_open(struct program *p)
+void takt_approach_open(struct program *p)
 {
     p->approach.pending = p->config.from_line > 0;
     p->approach.holds_line = p->approach.is_up = false;
@@ -24,7 +24,7 @@ static double highest(const struct move *m, const struct point *start)
 {
     enum axis axis[2];
 
-    plane_axes(m->plane, &axis[0], &axis[1]);
+    takt_plane_axes(m->plane, &axis[0], &axis[1]);
     if (!(move_is_arc(m) || move_is_involute(m)) || (axis[0] != AXIS_Z && axis[1] != AXIS_Z)) {
         return m->end.at[AXIS_Z];
     }
@@ -51,16 +51,16 @@ static bool give_up(struct program *p, enum takt_error code, uint32_t line)
     p->approach.pending = false;
     p->phase = PROGRAM_ENDED;
     p->queue_count = 0;
-    diagnostic_set(&p->error, code, line, 0, "", 0, p->config.from_line);
+    takt_diagnostic_set(&p->error, code, line, 0, "", 0, p->config.from_line);
     return false;
 }
 
-bool approach_drop(struct program *p)
+bool takt_approach_drop(struct program *p)
 {
     struct program_approach *a = &p->approach;
     struct move m;
 
-    while (emit_take(p, &m)) {
+    while (takt_emit_take(p, &m)) {
         if (m.kind == MOVE_PROBE) {
             return give_up(p, TAKT_ERROR_FROM_LINE_PROBE, m.line);
         }
@@ -85,7 +85,7 @@ static void go(struct program *p, enum move_kind kind, struct point *at, const s
     if (point_is_same(at, end)) {
         return;
     }
-    struct move *m = emit_event(p, kind);
+    struct move *m = takt_emit_event(p, kind);
 
     m->end = *end;
     m->path = PATH_EXACT_STOP;
@@ -97,14 +97,14 @@ static void bring_tool(struct program *p)
     const struct program_modes *m = &p->modes;
 
     if (m->tool_current != 0) {
-        emit_event(p, MOVE_TOOL)->tool = m->tool_current;
-        struct move *change = emit_event(p, MOVE_TOOL);
+        takt_emit_event(p, MOVE_TOOL)->tool = m->tool_current;
+        struct move *change = takt_emit_event(p, MOVE_TOOL);
 
         change->tool = m->tool_current;
         change->tool_change = true;
     }
     if (m->tool_is_selected && m->tool_selected != m->tool_current) {
-        emit_event(p, MOVE_TOOL)->tool = m->tool_selected;
+        takt_emit_event(p, MOVE_TOOL)->tool = m->tool_selected;
     }
 }
 
@@ -120,7 +120,7 @@ static void set_up_part(struct program *p)
 
     for (unsigned i = 0; i < MOVE_SETUP_VALUES; i++) {
         if ((p->approach.setups & 1U << i) != 0) {
-            last = emit_event(p, MOVE_SETUP);
+            last = takt_emit_event(p, MOVE_SETUP);
             last->channel = i;
             last->setup = p->approach.setup[i];
         }
@@ -154,10 +154,10 @@ static void queue_way_there(struct program *p)
     next.at[AXIS_Z] = at->at[AXIS_Z];
     go(p, MOVE_RAPID, at, &next);
     if (p->modes.direction != SPINDLE_OFF) {
-        events_tell_spindle(p);
+        takt_events_tell_spindle(p);
     }
     if (p->modes.mist || p->modes.flood) {
-        events_tell_coolant(p);
+        takt_events_tell_coolant(p);
     }
     const unsigned before = p->queue_count;
 
@@ -173,16 +173,16 @@ static bool is_within_travel(struct program *p)
     struct move m;
     struct travel_excess excess;
 
-    emit_prepare(p, MOVE_RAPID, &p->modes.at, &m);
-    if (travel_holds(&p->config, &p->config.start, &m, &excess)) {
+    takt_emit_prepare(p, MOVE_RAPID, &p->modes.at, &m);
+    if (takt_travel_holds(&p->config, &p->config.start, &m, &excess)) {
         return true;
     }
     (void)give_up(p, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line);
-    travel_report(&p->error, p->lexer.line, 0, &excess);
+    takt_travel_report(&p->error, p->lexer.line, 0, &excess);
     return false;
 }
 
-bool approach_begins(struct program *p, bool *good)
+bool takt_approach_begins(struct program *p, bool *good)
 {
     if (!p->approach.pending || p->lexer.line != p->config.from_line || flow_is_skipping(p) ||
         contour_is_open(p)) {
@@ -198,7 +198,7 @@ bool approach_begins(struct program *p, bool *good)
     return true;
 }
 
-bool approach_goes_on(struct program *p)
+bool takt_approach_goes_on(struct program *p)
 {
     struct program_approach *a = &p->approach;
 

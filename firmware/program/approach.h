@@ -14,21 +14,21 @@
 
 #include "program/program.h"
 
-void approach_open(struct program *p);
+void takt_approach_open(struct program *p);
 
 /*
  * True when the line in the lexer is the chosen one, for the first time: the moves to it are queued. *good is false
  * when nobody can start here, p->error is set.
  */
-bool approach_begins(struct program *p, bool *good);
+bool takt_approach_begins(struct program *p, bool *good);
 
 /* The first half has been fetched: the second is queued. False: that is so already, and the line is to be taken. */
-bool approach_goes_on(struct program *p);
+bool takt_approach_goes_on(struct program *p);
 
 /*
  * Drops the queued moves and notes how the part is set up and how high they go, until the line is reached. False: the program has ended
  * before, p->error is set.
  */
-bool approach_drop(struct program *p);
+bool takt_approach_drop(struct program *p);
 
 #endif

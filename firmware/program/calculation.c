@@ -72,10 +72,10 @@ static enum takt_error modulo(double left, double right, double *result)
 
 static enum takt_error power(double left, double right, double *result)
 {
-    if (left < 0.0 && maths_floor(right) != right) {
+    if (left < 0.0 && takt_maths_floor(right) != right) {
         return TAKT_ERROR_CALCULATION_UNDEFINED;
     }
-    *result = maths_power(left, right);
+    *result = takt_maths_power(left, right);
     return TAKT_OK;
 }
 
@@ -175,7 +175,7 @@ static bool begins_with(const char *text, const char *name)
     return *name == '\0';
 }
 
-const struct operation_entry *operation_find(const char *text)
+const struct operation_entry *takt_operation_find(const char *text)
 {
     for (size_t i = 0; i < sizeof(operations) / sizeof(operations[0]); i++) {
         if (begins_with(text, operations[i].name)) {
@@ -196,7 +196,7 @@ static enum takt_error function_acos(double x, double *result)
     if (maths_abs(x) > 1.0) {
         return TAKT_ERROR_CALCULATION_UNDEFINED;
     }
-    *result = maths_acos(x) * DEGREES_PER_RAD;
+    *result = takt_maths_acos(x) * DEGREES_PER_RAD;
     return TAKT_OK;
 }
 
@@ -205,31 +205,31 @@ static enum takt_error function_asin(double x, double *result)
     if (maths_abs(x) > 1.0) {
         return TAKT_ERROR_CALCULATION_UNDEFINED;
     }
-    *result = maths_asin(x) * DEGREES_PER_RAD;
+    *result = takt_maths_asin(x) * DEGREES_PER_RAD;
     return TAKT_OK;
 }
 
 static enum takt_error function_cos(double x, double *result)
 {
-    *result = maths_cos(x * RAD_PER_DEGREE);
+    *result = takt_maths_cos(x * RAD_PER_DEGREE);
     return TAKT_OK;
 }
 
 static enum takt_error function_exp(double x, double *result)
 {
-    *result = maths_exp(x);
+    *result = takt_maths_exp(x);
     return TAKT_OK;
 }
 
 static enum takt_error function_fix(double x, double *result)
 {
-    *result = maths_floor(x);
+    *result = takt_maths_floor(x);
     return TAKT_OK;
 }
 
 static enum takt_error function_fup(double x, double *result)
 {
-    *result = maths_ceil(x);
+    *result = takt_maths_ceil(x);
     return TAKT_OK;
 }
 
@@ -238,19 +238,19 @@ static enum takt_error function_ln(double x, double *result)
     if (x <= 0.0) {
         return TAKT_ERROR_CALCULATION_UNDEFINED;
     }
-    *result = maths_ln(x);
+    *result = takt_maths_ln(x);
     return TAKT_OK;
 }
 
 static enum takt_error function_round(double x, double *result)
 {
-    *result = maths_round(x);
+    *result = takt_maths_round(x);
     return TAKT_OK;
 }
 
 static enum takt_error function_sin(double x, double *result)
 {
-    *result = maths_sin(x * RAD_PER_DEGREE);
+    *result = takt_maths_sin(x * RAD_PER_DEGREE);
     return TAKT_OK;
 }
 
@@ -265,7 +265,7 @@ static enum takt_error function_sqrt(double x, double *result)
 
 static enum takt_error function_tan(double x, double *result)
 {
-    *result = maths_tan(x * RAD_PER_DEGREE);
+    *result = takt_maths_tan(x * RAD_PER_DEGREE);
     return TAKT_OK;
 }
 
@@ -286,7 +286,7 @@ static const struct function_entry functions[] = {
 
 #undef FUNCTION
 
-const struct function_entry *function_find(const char *text)
+const struct function_entry *takt_function_find(const char *text)
 {
     for (size_t i = 0; i < sizeof(functions) / sizeof(functions[0]); i++) {
         if (begins_with(text, functions[i].name)) {
@@ -296,7 +296,7 @@ const struct function_entry *function_find(const char *text)
     return NULL;
 }
 
-double calculation_atan(double y, double x)
+double takt_calculation_atan(double y, double x)
 {
-    return maths_atan2(y, x) * DEGREES_PER_RAD;
+    return takt_maths_atan2(y, x) * DEGREES_PER_RAD;
 }

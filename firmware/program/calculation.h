@@ -26,7 +26,7 @@ struct operation_entry {
 };
 
 /* The operator text begins with; NULL when there is none. */
-const struct operation_entry *operation_find(const char *text);
+const struct operation_entry *takt_operation_find(const char *text);
 
 struct function_entry {
     char name[8];
@@ -36,9 +36,9 @@ struct function_entry {
 };
 
 /* The function text begins with; NULL when there is none. */
-const struct function_entry *function_find(const char *text);
+const struct function_entry *takt_function_find(const char *text);
 
 /* ATAN[y]/[x] in degrees, -180 ... 180. */
-double calculation_atan(double y, double x);
+double takt_calculation_atan(double y, double x);
 
 #endif

@@ -26,52 +26,52 @@ static unsigned find_sub(const struct program *p, const struct program_label *la
     return PROGRAM_SUBS_MAX;
 }
 
-bool calls_note(struct program *p, const struct oword *o)
+bool takt_calls_note(struct program *p, const struct oword *o)
 {
     struct program_flow *f = &p->flow;
-    const struct program_place body = lexer_place(&p->lexer);
+    const struct program_place body = takt_lexer_place(&p->lexer);
     const unsigned known = find_sub(p, &o->label);
 
     if (known != PROGRAM_SUBS_MAX) {
         return f->sub[known].body.offset == body.offset ||
-               oword_error(p, TAKT_ERROR_SUB_DEFINED_TWICE, o, f->sub[known].body.line);
+               takt_oword_error(p, TAKT_ERROR_SUB_DEFINED_TWICE, o, f->sub[known].body.line);
     }
     if (f->subs == PROGRAM_SUBS_MAX) {
-        return oword_error(p, TAKT_ERROR_SUBS_TOO_MANY, o, PROGRAM_SUBS_MAX);
+        return takt_oword_error(p, TAKT_ERROR_SUBS_TOO_MANY, o, PROGRAM_SUBS_MAX);
     }
     f->sub[f->subs++] =
         (struct program_sub){.label = o->label, .body = body, .numbered = o->kind == OWORD_PROGRAM};
     return true;
 }
 
-bool calls_begin_program(struct program *p, const struct oword *o)
+bool takt_calls_begin_program(struct program *p, const struct oword *o)
 {
-    return calls_note(p, o);
+    return takt_calls_note(p, o);
 }
 
-bool calls_define(struct program *p, const struct oword *o)
+bool takt_calls_define(struct program *p, const struct oword *o)
 {
     struct program_flow *f = &p->flow;
 
     if (f->calls > 0) {
-        return oword_error(p, TAKT_ERROR_SUB_NESTED, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_NESTED, o, 0.0);
     }
     f->skip = SKIP_TO_ENDSUB;
     f->skip_label = o->label;
     f->skip_line = o->line;
     f->skip_column = o->column;
-    return calls_note(p, o) && oword_finish(p, o);
+    return takt_calls_note(p, o) && takt_oword_finish(p, o);
 }
 
 /* #5220 has a place already: another system than now has been selected before. */
 static bool restore_modes(struct program *p, const struct program_frame *frame,
                           const struct oword *o)
 {
-    if (!saved_modes_restore(p, frame)) {
-        return oword_error(p, TAKT_ERROR_CUTTER_ON, o, 0.0);
+    if (!takt_saved_modes_restore(p, frame)) {
+        return takt_oword_error(p, TAKT_ERROR_CUTTER_ON, o, 0.0);
     }
-    return parameters_set(p->config.parameters, PARAMETER_SYSTEM, p->modes.system) ||
-           oword_error(p, TAKT_ERROR_PARAMETERS_FULL, o, 0.0);
+    return takt_parameters_set(p->config.parameters, PARAMETER_SYSTEM, p->modes.system) ||
+           takt_oword_error(p, TAKT_ERROR_PARAMETERS_FULL, o, 0.0);
 }
 
 /* #1 ... that a caller has to find again: up to the last one with any bit set, since -0 is not 0 everywhere. */
@@ -118,10 +118,10 @@ static bool leave(struct program *p, const struct oword *o)
     if (!frame->numbered) {
         bring_back_locals(p, frame);
     }
-    names_leave_call(&p->names);
+    takt_names_leave_call(&p->names);
     p->flow.blocks = frame->blocks;
     p->flow.calls--;
-    if (!flow_jump(p, &frame->back, o)) {
+    if (!takt_flow_jump(p, &frame->back, o)) {
         return false;
     }
     return !frame->restores || restore_modes(p, frame, o);
@@ -134,11 +134,11 @@ static bool enter(struct program *p, const struct oword *o, unsigned sub)
 
     if (s->numbered != frame->numbered) {
         (void)leave(p, o);
-        return oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);
     }
     frame->sub = (uint8_t)sub;
     s->visited = p->flow.failed;
-    return flow_jump(p, &s->body, o);
+    return takt_flow_jump(p, &s->body, o);
 }
 
 /* To the subroutine of the call that has just begun, or to where it may be found. */
@@ -152,11 +152,11 @@ static bool go_to_sub(struct program *p, const struct oword *o)
     }
     if (f->all_seen) {
         (void)leave(p, o);
-        return oword_error(p, TAKT_ERROR_SUB_UNKNOWN, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_UNKNOWN, o, 0.0);
     }
     f->skip = SKIP_TO_SUB;
     f->skip_label = o->label;
-    return flow_jump(p, &f->furthest, o);
+    return takt_flow_jump(p, &f->furthest, o);
 }
 
 /* After an error each subroutine is read once more, to find the errors in it. */
@@ -171,20 +171,20 @@ static bool begin_call(struct program *p, const struct oword *o, uint32_t times)
 {
     struct program_flow *f = &p->flow;
 
-    if (!lexer_can_seek(&p->lexer)) {
-        return oword_error(p, TAKT_ERROR_JUMP_BACK, o, 0.0);
+    if (!takt_lexer_can_seek(&p->lexer)) {
+        return takt_oword_error(p, TAKT_ERROR_JUMP_BACK, o, 0.0);
     }
     if (f->calls == PROGRAM_CALLS_MAX) {
-        return oword_error(p, TAKT_ERROR_CALL_TOO_DEEP, o, PROGRAM_CALLS_MAX);
+        return takt_oword_error(p, TAKT_ERROR_CALL_TOO_DEEP, o, PROGRAM_CALLS_MAX);
     }
     struct program_frame *frame = &f->frame[f->calls + 1];
 
     frame->numbered = o->kind == OWORD_M98;
-    if (!keep_locals(p, frame, saved_modes_end(current(p)))) {
-        return oword_error(p, TAKT_ERROR_PROGRAM_FULL, o, 0.0);
+    if (!keep_locals(p, frame, takt_saved_modes_end(current(p)))) {
+        return takt_oword_error(p, TAKT_ERROR_PROGRAM_FULL, o, 0.0);
     }
     f->calls++;
-    frame->back = lexer_place(&p->lexer);
+    frame->back = takt_lexer_place(&p->lexer);
     frame->sub = PROGRAM_SUBS_MAX;
     frame->is_saved = false;
     frame->restores = false;
@@ -192,7 +192,7 @@ static bool begin_call(struct program *p, const struct oword *o, uint32_t times)
     frame->times = times;
     frame->line = o->line;
     frame->column = o->column;
-    names_enter_call(&p->names);
+    takt_names_enter_call(&p->names);
     return go_to_sub(p, o);
 }
 
@@ -201,17 +201,17 @@ static bool read_arguments(struct program *p, const struct oword *o, double *val
 {
     for (unsigned i = 0; i < PARAMETERS_LOCAL; i++) {
         values[i] = 0.0;
-        if (p->lexer.text[p->lexer.at] == '[' && !expression_read(p, &values[i])) {
+        if (p->lexer.text[p->lexer.at] == '[' && !takt_expression_read(p, &values[i])) {
             return false;
         }
     }
     if (p->lexer.text[p->lexer.at] == '[') {
-        return oword_error(p, TAKT_ERROR_CALL_ARGUMENTS, o, PARAMETERS_LOCAL);
+        return takt_oword_error(p, TAKT_ERROR_CALL_ARGUMENTS, o, PARAMETERS_LOCAL);
     }
-    return oword_finish(p, o);
+    return takt_oword_finish(p, o);
 }
 
-bool calls_call(struct program *p, const struct oword *o)
+bool takt_calls_call(struct program *p, const struct oword *o)
 {
     double values[PARAMETERS_LOCAL];
 
@@ -235,7 +235,7 @@ static bool read_returned(struct program *p, const struct oword *o)
     double value = 0.0;
     const bool given = p->lexer.text[p->lexer.at] == '[';
 
-    if ((given && !expression_read(p, &value)) || !oword_finish(p, o)) {
+    if ((given && !takt_expression_read(p, &value)) || !takt_oword_finish(p, o)) {
         return false;
     }
     f->value = value;
@@ -244,18 +244,18 @@ static bool read_returned(struct program *p, const struct oword *o)
 }
 
 /* ENDSUB has the label of its subroutine; RETURN leaves it whatever its own is. */
-bool calls_return(struct program *p, const struct oword *o)
+bool takt_calls_return(struct program *p, const struct oword *o)
 {
     const struct program_frame *frame = current(p);
 
     if (p->flow.calls == 0) {
-        return oword_error(p, TAKT_ERROR_SUB_NOT_INSIDE, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_NOT_INSIDE, o, 0.0);
     }
     if (frame->numbered) {
-        return oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);
     }
     if (o->kind != OWORD_RETURN && !oword_same_label(&p->flow.sub[frame->sub].label, &o->label)) {
-        return oword_error(p, TAKT_ERROR_SUB_NOT_INSIDE, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_NOT_INSIDE, o, 0.0);
     }
     const bool good = read_returned(p, o);
 
@@ -273,7 +273,7 @@ static bool arrive(struct program *p, const struct oword *o)
     return enter(p, &call, find_sub(p, &o->label));
 }
 
-bool calls_pass(struct program *p, const struct oword *o)
+bool takt_calls_pass(struct program *p, const struct oword *o)
 {
     struct program_flow *f = &p->flow;
     const bool same = oword_same_label(&f->skip_label, &o->label);
@@ -284,7 +284,7 @@ bool calls_pass(struct program *p, const struct oword *o)
         return !(same && begins) || arrive(p, o);
     }
     if (o->kind == OWORD_SUB) {
-        return oword_error(p, TAKT_ERROR_SUB_NESTED, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_NESTED, o, 0.0);
     }
     if (same && o->kind == OWORD_ENDSUB) {
         f->skip = SKIP_NOTHING;
@@ -292,7 +292,7 @@ bool calls_pass(struct program *p, const struct oword *o)
     return true;
 }
 
-bool calls_end_of_text(struct program *p)
+bool takt_calls_end_of_text(struct program *p)
 {
     struct program_flow *f = &p->flow;
     const struct program_frame *frame = current(p);
@@ -303,11 +303,11 @@ bool calls_end_of_text(struct program *p)
         o.line = frame->line;
         o.column = frame->column;
         f->skip = SKIP_NOTHING;
-        return leave(p, &o) && oword_error(p, TAKT_ERROR_SUB_UNKNOWN, &o, 0.0);
+        return leave(p, &o) && takt_oword_error(p, TAKT_ERROR_SUB_UNKNOWN, &o, 0.0);
     }
     if (f->skip == SKIP_TO_ENDSUB) {
         o.kind = OWORD_SUB;
-        return oword_error(p, TAKT_ERROR_OWORD_UNCLOSED, &o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_OWORD_UNCLOSED, &o, 0.0);
     }
     if (f->calls == 0) {
         return true;
@@ -316,16 +316,16 @@ bool calls_end_of_text(struct program *p)
     o.label = f->sub[frame->sub].label;
     o.line = f->sub[frame->sub].body.line;
     o.column = 0;
-    return oword_error(p, TAKT_ERROR_OWORD_UNCLOSED, &o, 0.0);
+    return takt_oword_error(p, TAKT_ERROR_OWORD_UNCLOSED, &o, 0.0);
 }
 
 static void place_of_code(const struct program *p, const struct program_code *code, struct oword *o)
 {
     o->line = p->lexer.line;
-    o->column = lexer_column(&p->lexer, p->words.code_span[code->step].begin);
+    o->column = takt_lexer_column(&p->lexer, p->words.code_span[code->step].begin);
 }
 
-bool calls_call_number(struct program *p, const struct program_code *code, uint32_t number)
+bool takt_calls_call_number(struct program *p, const struct program_code *code, uint32_t number)
 {
     struct oword o = {.kind = OWORD_CALL, .label.id = number};
 
@@ -345,10 +345,10 @@ static bool call_program(struct program *p, const struct program_code *code)
 
     place_of_code(p, code, &o);
     if (!words_has(p, 'p')) {
-        return report_error_code(p, TAKT_ERROR_CALL_P_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_CALL_P_MISSING, code->step, 0.0);
     }
-    if (!words_whole(p, 'p', 0.0, PROGRAM_LABEL_MAX, &number) ||
-        (words_has(p, 'l') && !words_whole(p, 'l', 0.0, PROGRAM_LABEL_MAX, &times))) {
+    if (!takt_words_whole(p, 'p', 0.0, PROGRAM_LABEL_MAX, &number) ||
+        (words_has(p, 'l') && !takt_words_whole(p, 'l', 0.0, PROGRAM_LABEL_MAX, &times))) {
         return false;
     }
     o.label.id = number;
@@ -367,7 +367,7 @@ static bool start_again(struct program *p, const struct oword *o)
     p->phase = PROGRAM_AT_START;
     p->flow.blocks = 0;
     p->flow.restarted = true;
-    return flow_jump(p, &beginning, o);
+    return takt_flow_jump(p, &beginning, o);
 }
 
 static bool end_program(struct program *p, const struct program_code *code)
@@ -380,19 +380,19 @@ static bool end_program(struct program *p, const struct program_code *code)
         return start_again(p, &o);
     }
     if (!frame->numbered) {
-        return oword_error(p, TAKT_ERROR_SUB_STYLE, &o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_SUB_STYLE, &o, 0.0);
     }
     if (frame->times <= 1 || p->flow.failed) {
         return leave(p, &o);
     }
     frame->times--;
     p->flow.blocks = frame->blocks;
-    names_leave_call(&p->names);
-    names_enter_call(&p->names);
-    return flow_jump(p, &p->flow.sub[frame->sub].body, &o);
+    takt_names_leave_call(&p->names);
+    takt_names_enter_call(&p->names);
+    return takt_flow_jump(p, &p->flow.sub[frame->sub].body, &o);
 }
 
-bool calls_run_code(struct program *p, const struct program_code *code)
+bool takt_calls_run_code(struct program *p, const struct program_code *code)
 {
     return code->argument == 0 ? call_program(p, code) : end_program(p, code);
 }

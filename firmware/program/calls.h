@@ -11,25 +11,25 @@
 #include "program/oword.h"
 
 /* Notes the subroutine or numbered program that begins on the current line. False: p->error is set. */
-bool calls_note(struct program *p, const struct oword *o);
+bool takt_calls_note(struct program *p, const struct oword *o);
 
 /* O...: executing goes on into it. O... sub: passed over until it is called. */
-bool calls_begin_program(struct program *p, const struct oword *o);
-bool calls_define(struct program *p, const struct oword *o);
+bool takt_calls_begin_program(struct program *p, const struct oword *o);
+bool takt_calls_define(struct program *p, const struct oword *o);
 /* O... call */
-bool calls_call(struct program *p, const struct oword *o);
+bool takt_calls_call(struct program *p, const struct oword *o);
 /* The same without arguments, for a code of the line. */
-bool calls_call_number(struct program *p, const struct program_code *code, uint32_t number);
+bool takt_calls_call_number(struct program *p, const struct program_code *code, uint32_t number);
 /* O... return and O... endsub */
-bool calls_return(struct program *p, const struct oword *o);
+bool takt_calls_return(struct program *p, const struct oword *o);
 
 /* An O-word on the way to the end of a definition, or to the subroutine called. */
-bool calls_pass(struct program *p, const struct oword *o);
+bool takt_calls_pass(struct program *p, const struct oword *o);
 
-/* The same as flow_end_of_text, for subroutines. */
-bool calls_end_of_text(struct program *p);
+/* The same as takt_flow_end_of_text, for subroutines. */
+bool takt_calls_end_of_text(struct program *p);
 
 /* M98 (argument 0), M99 (1) */
-bool calls_run_code(struct program *p, const struct program_code *code);
+bool takt_calls_run_code(struct program *p, const struct program_code *code);
 
 #endif

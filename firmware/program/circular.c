@@ -56,7 +56,8 @@ static bool missing(struct program *p, enum takt_error code, const char *letter)
 {
     const unsigned begin = p->words.code_span[STEP_MOTION].begin;
 
-    diagnostic_set(&p->error, code, p->lexer.line, lexer_column(&p->lexer, begin), letter, 1, 0.0);
+    takt_diagnostic_set(&p->error, code, p->lexer.line, takt_lexer_column(&p->lexer, begin), letter,
+                        1, 0.0);
     return false;
 }
 
@@ -73,7 +74,7 @@ static bool centre_word(struct program *p, enum axis axis, double *word_mm)
     return true;
 }
 
-bool circular_centre(struct program *p, enum axis first, enum axis second, double centre_mm[2])
+bool takt_circular_centre(struct program *p, enum axis first, enum axis second, double centre_mm[2])
 {
     const struct program_modes *m = &p->modes;
     const enum axis axis[2] = {first, second};
@@ -86,7 +87,7 @@ bool circular_centre(struct program *p, enum axis first, enum axis second, doubl
         word_mm[i] += m->axis_offset.at[axis[i]];
     }
     if (m->plane == PLANE_XY) {
-        coordinates_turn(&m->turn, &word_mm[0], &word_mm[1]);
+        takt_coordinates_turn(&m->turn, &word_mm[0], &word_mm[1]);
     }
     for (unsigned i = 0; i < 2; i++) {
         centre_mm[i] = word_mm[i] + (m->centre_absolute
@@ -96,7 +97,7 @@ bool circular_centre(struct program *p, enum axis first, enum axis second, doubl
     return true;
 }
 
-double circular_slack_mm(const struct program *p)
+double takt_circular_slack_mm(const struct program *p)
 {
     return p->modes.unit_mm == 1.0 ? OFF_CIRCLE_MAX_MM : OFF_CIRCLE_MAX_INCH * p->modes.unit_mm;
 }
@@ -106,21 +107,21 @@ static bool check_radii(struct program *p, const struct circle *c)
     const double start_mm = distance(c->start_mm, c->centre_mm);
     const double end_mm = distance(c->end_mm, c->centre_mm);
     const double off_mm = maths_abs(start_mm - end_mm);
-    const double always_mm = circular_slack_mm(p);
+    const double always_mm = takt_circular_slack_mm(p);
     const double ratio_mm = OFF_CIRCLE_MAX_RATIO * maths_max(start_mm, end_mm);
 
     if (start_mm < RADIUS_SLACK_MM || end_mm < RADIUS_SLACK_MM) {
-        return report_error_code(p, TAKT_ERROR_ARC_RADIUS_ZERO, STEP_MOTION, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_ARC_RADIUS_ZERO, STEP_MOTION, 0.0);
     }
     if (off_mm <= always_mm || (off_mm <= ratio_mm && off_mm <= OFF_CIRCLE_TIMES * always_mm)) {
         return true;
     }
-    return report_error_code(p, TAKT_ERROR_ARC_ENDPOINT, STEP_MOTION, off_mm);
+    return takt_report_error_code(p, TAKT_ERROR_ARC_ENDPOINT, STEP_MOTION, off_mm);
 }
 
 static bool centre_from_offsets(struct program *p, struct circle *c)
 {
-    return circular_centre(p, c->first, c->second, c->centre_mm) && check_radii(p, c);
+    return takt_circular_centre(p, c->first, c->second, c->centre_mm) && check_radii(p, c);
 }
 
 /* sqrt(R^2 - h^2), 0 when R is as good as h. */
@@ -141,10 +142,10 @@ static bool centre_from_radius(struct program *p, struct circle *c, bool clockwi
     const double half_mm = distance(c->start_mm, c->end_mm) * 0.5;
 
     if (half_mm == 0.0) {
-        return report_error_letter(p, TAKT_ERROR_ARC_CLOSED, 'r', 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_ARC_CLOSED, 'r', 0.0);
     }
     if (half_mm - radius_mm > RADIUS_SLACK_MM) {
-        return report_error_letter(p, TAKT_ERROR_ARC_RADIUS_SMALL, 'r', half_mm - radius_mm);
+        return takt_report_error_letter(p, TAKT_ERROR_ARC_RADIUS_SMALL, 'r', half_mm - radius_mm);
     }
     const bool left = clockwise != (given_mm > 0.0);
     const double along =
@@ -155,34 +156,34 @@ static bool centre_from_radius(struct program *p, struct circle *c, bool clockwi
     return true;
 }
 
-bool circular_check_axes(struct program *p, enum axis first, enum axis second)
+bool takt_circular_check_axes(struct program *p, enum axis first, enum axis second)
 {
-    const unsigned plane_axes = (1U << first) | (1U << second);
+    const unsigned takt_plane_axes = (1U << first) | (1U << second);
 
-    if ((p->config.axes & plane_axes) != plane_axes) {
+    if ((p->config.axes & takt_plane_axes) != takt_plane_axes) {
         const bool first_missing = (p->config.axes & (1U << first)) == 0;
 
         return missing(p, TAKT_ERROR_AXIS_MISSING, &AXIS_LETTERS[first_missing ? first : second]);
     }
     if (p->modes.turn.degrees != 0.0 && p->modes.plane != PLANE_XY) {
-        return report_error_code(p, TAKT_ERROR_ARC_TILTED, STEP_MOTION, p->modes.turn.degrees);
+        return takt_report_error_code(p, TAKT_ERROR_ARC_TILTED, STEP_MOTION, p->modes.turn.degrees);
     }
     if (p->modes.cutter_left) {
-        return report_error_code(p, TAKT_ERROR_CUTTER_EXIT_ARC, STEP_MOTION, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_CUTTER_EXIT_ARC, STEP_MOTION, 0.0);
     }
     return true;
 }
 
 /* The centre's word of the axis across the plane has no meaning. */
-bool circular_check_plane(struct program *p, enum axis first, enum axis second)
+bool takt_circular_check_plane(struct program *p, enum axis first, enum axis second)
 {
     const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - first - second);
 
-    if (!circular_check_axes(p, first, second)) {
+    if (!takt_circular_check_axes(p, first, second)) {
         return false;
     }
     if (words_has(p, centre_letter(other))) {
-        return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, centre_letter(other), 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_UNUSED, centre_letter(other), 0.0);
     }
     return true;
 }
@@ -191,29 +192,29 @@ static bool check_words(struct program *p, const struct circle *c)
 {
     const bool offsets = (p->words.given & LETTERS_CENTRE) != 0;
 
-    if (!circular_check_plane(p, c->first, c->second)) {
+    if (!takt_circular_check_plane(p, c->first, c->second)) {
         return false;
     }
     if (words_has(p, 'r') && offsets) {
-        return report_error_letter(p, TAKT_ERROR_ARC_CENTRE_TWICE, 'r', 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_ARC_CENTRE_TWICE, 'r', 0.0);
     }
     if (!words_has(p, 'r') && !offsets) {
-        return report_error_code(p, TAKT_ERROR_ARC_CENTRE_MISSING, STEP_MOTION, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_ARC_CENTRE_MISSING, STEP_MOTION, 0.0);
     }
     return true;
 }
 
 static void set_circle(const struct program *p, const struct point *end, struct circle *c)
 {
-    plane_axes(p->modes.plane, &c->first, &c->second);
+    takt_plane_axes(p->modes.plane, &c->first, &c->second);
     c->start_mm[0] = p->modes.at.at[c->first];
     c->start_mm[1] = p->modes.at.at[c->second];
     c->end_mm[0] = end->at[c->first];
     c->end_mm[1] = end->at[c->second];
 }
 
-bool circular_find_centre(struct program *p, const struct program_code *code,
-                          const struct point *end, double centre_mm[2])
+bool takt_circular_find_centre(struct program *p, const struct program_code *code,
+                               const struct point *end, double centre_mm[2])
 {
     const bool clockwise = code->argument == MOVE_ARC_CW;
     struct circle c;
@@ -228,21 +229,21 @@ bool circular_find_centre(struct program *p, const struct program_code *code,
     return true;
 }
 
-bool circular_move(struct program *p, const struct program_code *code)
+bool takt_circular_move(struct program *p, const struct program_code *code)
 {
     struct point end;
     struct move m;
 
-    coordinates_end(p, &end);
-    emit_prepare(p, (enum move_kind)code->argument, &end, &m);
-    if (!circular_find_centre(p, code, &end, m.centre_mm)) {
+    takt_coordinates_end(p, &end);
+    takt_emit_prepare(p, (enum move_kind)code->argument, &end, &m);
+    if (!takt_circular_find_centre(p, code, &end, m.centre_mm)) {
         return false;
     }
     m.plane = p->modes.plane;
     m.turns = 1;
-    if (words_has(p, 'p') && !words_whole(p, 'p', 1.0, PROGRAM_TURNS_MAX, &m.turns)) {
+    if (words_has(p, 'p') && !takt_words_whole(p, 'p', 1.0, PROGRAM_TURNS_MAX, &m.turns)) {
         return false;
     }
     p->modes.motion = code;
-    return emit_motion(p, &m);
+    return takt_emit_motion(p, &m);
 }

@@ -90,7 +90,7 @@ struct program_code {
 };
 
 /* NULL when there is no such code. */
-const struct program_code *code_find(char letter, unsigned number_x10);
+const struct program_code *takt_code_find(char letter, unsigned number_x10);
 
 /* Bit of a letter in given, words and the like. */
 #define LETTER_INDEX(letter) ((unsigned)((letter) - 'a'))

@@ -2,7 +2,7 @@
 
 #include "program/lexer.h"
 
-char comment_lower(char c)
+char takt_comment_lower(char c)
 {
     if (c >= 'A' && c <= 'Z') {
         return (char)(c - 'A' + 'a');
@@ -10,14 +10,14 @@ char comment_lower(char c)
     return c;
 }
 
-unsigned comment_match(const struct program_lexer *l, const char *word)
+unsigned takt_comment_match(const struct program_lexer *l, const char *word)
 {
     unsigned at = 0;
 
-    while (lexer_comment(l, at) == ' ') {
+    while (takt_lexer_comment(l, at) == ' ') {
         at++;
     }
-    while (*word != '\0' && comment_lower(lexer_comment(l, at)) == *word) {
+    while (*word != '\0' && takt_comment_lower(takt_lexer_comment(l, at)) == *word) {
         word++;
         at++;
     }
@@ -30,16 +30,16 @@ static bool end_program(struct program *p, unsigned from)
     size_t length = 0;
 
     while (length < sizeof(text) && from < p->lexer.comment_length) {
-        text[length++] = lexer_comment(&p->lexer, from++);
+        text[length++] = takt_lexer_comment(&p->lexer, from++);
     }
-    diagnostic_set(&p->error, TAKT_ERROR_ABORTED, p->lexer.line, 0, text, length, 0.0);
+    takt_diagnostic_set(&p->error, TAKT_ERROR_ABORTED, p->lexer.line, 0, text, length, 0.0);
     p->phase = PROGRAM_ENDED;
     return false;
 }
 
-bool comment_run(struct program *p)
+bool takt_comment_run(struct program *p)
 {
-    const unsigned abort = comment_match(&p->lexer, "abort,");
+    const unsigned abort = takt_comment_match(&p->lexer, "abort,");
 
     if (p->config.say != NULL) {
         p->config.say(p->config.listener, p);

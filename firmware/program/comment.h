@@ -7,11 +7,11 @@
 #include "program/program.h"
 
 /* Of a letter its small one; anything else as it is. */
-char comment_lower(char c);
+char takt_comment_lower(char c);
 /* What begins the line's last comment, after spaces and whatever its case: how far it reaches, or 0. word: in lower case. */
-unsigned comment_match(const struct program_lexer *l, const char *word);
+unsigned takt_comment_match(const struct program_lexer *l, const char *word);
 
 /* What the line's last comment asks for; false: p->error is set. */
-bool comment_run(struct program *p);
+bool takt_comment_run(struct program *p);
 
 #endif

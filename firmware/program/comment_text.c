@@ -40,7 +40,7 @@ struct reading {
 
 static char next(const struct reading *r, unsigned ahead)
 {
-    return lexer_comment(&r->p->lexer, r->at + ahead);
+    return takt_lexer_comment(&r->p->lexer, r->at + ahead);
 }
 
 static bool is_digit(char c)
@@ -83,12 +83,12 @@ static bool read_named(struct reading *r, double *value)
         const char c = next(r, 0);
 
         if (c != ' ' && c != '\t') {
-            name[length++] = comment_lower(c);
+            name[length++] = takt_comment_lower(c);
         }
     }
     r->at += next(r, 0) == '>' ? 1 : 0;
     return length > 0 && length <= PROGRAM_NAME_MAX &&
-           expression_find_named(r->p, name, length, value);
+           takt_expression_find_named(r->p, name, length, value);
 }
 
 static bool read_numbered(struct reading *r, double *value)
@@ -102,7 +102,7 @@ static bool read_numbered(struct reading *r, double *value)
     if (number == 0 || number > PARAMETER_NUMBER_MAX) {
         return false;
     }
-    *value = system_parameter_get(r->p, number);
+    *value = takt_system_parameter_get(r->p, number);
     return true;
 }
 
@@ -116,7 +116,7 @@ static void read_value(struct reading *r)
     if (next(r, 0) != '<' && !is_digit(next(r, 0))) {
         add(r, "#", 1);
     } else if (next(r, 0) == '<' ? read_named(r, &value) : read_numbered(r, &value)) {
-        add(r, digits, decimal_write(digits, value, r->places));
+        add(r, digits, takt_decimal_write(digits, value, r->places));
     } else {
         add(r, "######", 6);
     }
@@ -140,13 +140,13 @@ static void read_text(struct reading *r, bool has_values)
     r->text[r->length] = '\0';
 }
 
-enum comment_kind comment_read(const struct program *p, char text[COMMENT_TEXT_MAX])
+enum comment_kind takt_comment_read(const struct program *p, char text[COMMENT_TEXT_MAX])
 {
     struct reading r = {.p = p, .places = PLACES};
 
     r.text = text;
     for (unsigned i = 0; i < sizeof(keywords) / sizeof(keywords[0]); i++) {
-        r.at = comment_match(&p->lexer, keywords[i].word);
+        r.at = takt_comment_match(&p->lexer, keywords[i].word);
         if (r.at > 0) {
             read_text(&r, keywords[i].has_values);
             return keywords[i].kind;

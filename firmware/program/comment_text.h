@@ -28,6 +28,6 @@ enum comment_kind {
  * DEBUG, PRINT, LOG and ABORT #1 and #<name> are the values of the parameters, with the places that %d (none), %f (four) or
  * %.2f before them ask for; six without. One that is not known is ######.
  */
-enum comment_kind comment_read(const struct program *p, char text[COMMENT_TEXT_MAX]);
+enum comment_kind takt_comment_read(const struct program *p, char text[COMMENT_TEXT_MAX]);
 
 #endif

@@ -23,19 +23,19 @@ static struct profile_point point_of(const struct program *p, const struct point
 {
     struct point work;
 
-    coordinates_work_of(p, machine, &work);
+    takt_coordinates_work_of(p, machine, &work);
     return (struct profile_point){work.at[AXIS_Z], work.at[AXIS_X]};
 }
 
 static bool check_use(struct program *p, const struct program_code *code)
 {
     if (p->modes.plane != PLANE_ZX || p->modes.turn.degrees != 0.0) {
-        return report_error_code(p, TAKT_ERROR_PROFILE_PLANE, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_PROFILE_PLANE, code->step, 0.0);
     }
     if (p->modes.inverse_time) {
-        return report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
     }
-    return circular_check_axes(p, AXIS_Z, AXIS_X);
+    return takt_circular_check_axes(p, AXIS_Z, AXIS_X);
 }
 
 static double length_or(const struct program *p, char letter, double otherwise)
@@ -54,12 +54,12 @@ static bool set_words(struct program *p, const struct program_code *code, struct
     t->retract_mm = length_or(p, 'r', 0.5 * p->modes.unit_mm);
     t->passes = 1;
     if (!(t->step_mm > 2.0 * PROFILE_SAME_MM)) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'i', words_value(p, 'i'));
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'i', words_value(p, 'i'));
     }
     if (t->retract_mm < 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'r', words_value(p, 'r'));
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'r', words_value(p, 'r'));
     }
-    return !words_has(p, 'p') || words_whole(p, 'p', 1.0, PROGRAM_REPEATS_MAX, &t->passes);
+    return !words_has(p, 'p') || takt_words_whole(p, 'p', 1.0, PROGRAM_REPEATS_MAX, &t->passes);
 }
 
 /* The cycle begins where X and Z say. */
@@ -72,10 +72,10 @@ static bool go_to_start(struct program *p)
     if ((p->words.given & (LETTER_BIT('x') | LETTER_BIT('z'))) == 0) {
         return true;
     }
-    coordinates_end(p, &end);
+    takt_coordinates_end(p, &end);
     p->modes.cutter_side = CUTTER_OFF;
-    emit_prepare(p, MOVE_RAPID, &end, &m);
-    const bool good = emit_motion(p, &m);
+    takt_emit_prepare(p, MOVE_RAPID, &end, &m);
+    const bool good = takt_emit_motion(p, &m);
 
     p->modes.cutter_side = side;
     return good;
@@ -89,13 +89,13 @@ static void begin_profile(struct program *p, const struct program_code *code)
     c->start = p->modes.at;
     c->at = point_of(p, &c->start);
     c->line = p->lexer.line;
-    c->column = (uint16_t)lexer_column(&p->lexer, p->words.code_span[code->step].begin);
+    c->column = (uint16_t)takt_lexer_column(&p->lexer, p->words.code_span[code->step].begin);
     c->calls = p->flow.calls;
     c->begun = false;
     c->failed = false;
 }
 
-bool contour_start(struct program *p, const struct program_code *code)
+bool takt_contour_start(struct program *p, const struct program_code *code)
 {
     struct program_cycle *c = &p->cycle;
     uint32_t label = 0;
@@ -104,21 +104,21 @@ bool contour_start(struct program *p, const struct program_code *code)
         return false;
     }
     if (!words_has(p, 'q')) {
-        return report_missing(p, code->step, 'q');
+        return takt_report_missing(p, code->step, 'q');
     }
-    if (!words_whole(p, 'q', 0.0, PROGRAM_LABEL_MAX, &label) ||
+    if (!takt_words_whole(p, 'q', 0.0, PROGRAM_LABEL_MAX, &label) ||
         !set_words(p, code, &c->contour.words) || !go_to_start(p)) {
         return false;
     }
-    emit_prepare(p, MOVE_FEED, &p->modes.at, &c->feed);
-    if (!emit_set_feed(p, &c->feed)) {
+    takt_emit_prepare(p, MOVE_FEED, &p->modes.at, &c->feed);
+    if (!takt_emit_set_feed(p, &c->feed)) {
         return false;
     }
     begin_profile(p, code);
-    if (!calls_call_number(p, code, label)) {
+    if (!takt_calls_call_number(p, code, label)) {
         return false;
     }
-    p->modes.motion = code_find('g', 0);
+    p->modes.motion = takt_code_find('g', 0);
     c->contour_open = true;
     return true;
 }
@@ -134,7 +134,8 @@ static bool report(struct program *p, enum takt_error error, double value)
     const char name[] = {'G', (char)('0' + number / 100), (char)('0' + number / 10 % 10), '.',
                          digit};
 
-    diagnostic_set(&p->error, error, c->line, c->column, name, number % 10 == 0 ? 3 : 5, value);
+    takt_diagnostic_set(&p->error, error, c->line, c->column, name, number % 10 == 0 ? 3 : 5,
+                        value);
     return false;
 }
 
@@ -163,7 +164,7 @@ static void end_of_line(const struct program *p, struct point *end)
 {
     const double diameter = p->modes.diameter ? 0.5 : 1.0;
 
-    coordinates_end(p, end);
+    takt_coordinates_end(p, end);
     end->at[AXIS_X] += length_or(p, 'u', 0.0) * diameter;
     end->at[AXIS_Z] += length_or(p, 'w', 0.0);
 }
@@ -192,14 +193,14 @@ static bool set_centre(struct program *p, const struct program_code *code, const
     enum axis second;
     double centre_mm[2];
 
-    if (code->run != circular_move) {
+    if (code->run != takt_circular_move) {
         s->kind = PROFILE_LINE;
         return true;
     }
-    if (!circular_find_centre(p, code, end, centre_mm)) {
+    if (!takt_circular_find_centre(p, code, end, centre_mm)) {
         return false;
     }
-    plane_axes(PLANE_ZX, &first, &second);
+    takt_plane_axes(PLANE_ZX, &first, &second);
     centre.at[first] = centre_mm[0];
     centre.at[second] = centre_mm[1];
     s->kind = PROFILE_ARC;
@@ -230,16 +231,16 @@ static bool add_line(struct program *p, const struct program_code *code)
     return add_corner(p, 'a', PROFILE_FILLET) && add_corner(p, 'c', PROFILE_CHAMFER);
 }
 
-bool contour_take_line(struct program *p)
+bool takt_contour_take_line(struct program *p)
 {
     const struct program_code *code = p->words.code[STEP_MOTION];
     const bool moves = words_has_step(p, STEP_MOTION) &&
-                       (code->run == straight_move || code->run == circular_move);
+                       (code->run == takt_straight_move || code->run == takt_circular_move);
 
-    if (words_assign(p) && (!moves || p->cycle.contour.failed || add_line(p, code))) {
+    if (takt_words_assign(p) && (!moves || p->cycle.contour.failed || add_line(p, code))) {
         return true;
     }
-    words_take_back(p);
+    takt_words_take_back(p);
     p->cycle.contour.failed = true;
     return false;
 }
@@ -276,7 +277,7 @@ static bool close_profile(struct program *p)
 
 static bool open_cycle(struct program *p)
 {
-    switch (turning_open(&p->turning)) {
+    switch (takt_turning_open(&p->turning)) {
     case TURNING_NOT_MONOTONE:
         return report(p, TAKT_ERROR_PROFILE_BACK, 0.0);
     case TURNING_CORNER:
@@ -297,14 +298,14 @@ static bool make_move(struct program *p, const struct turning_move *t, struct mo
     enum axis first;
     enum axis second;
 
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     work.at[AXIS_X] = t->centre.v;
     work.at[AXIS_Z] = t->centre.u;
-    coordinates_machine_of(p, &work, &centre);
+    takt_coordinates_machine_of(p, &work, &centre);
     work.at[AXIS_X] = t->end.v;
     work.at[AXIS_Z] = t->end.u;
     *m = p->cycle.feed;
-    coordinates_machine_of(p, &work, &m->end);
+    takt_coordinates_machine_of(p, &work, &m->end);
     if (point_is_same(&m->end, &p->modes.at)) {
         return false;
     }
@@ -313,23 +314,23 @@ static bool make_move(struct program *p, const struct turning_move *t, struct mo
         m->feed_mm_s = 0.0;
         m->feed_rev_mm = 0.0;
     } else if (t->arc) {
-        plane_axes(PLANE_ZX, &first, &second);
+        takt_plane_axes(PLANE_ZX, &first, &second);
         m->kind = t->left ? MOVE_ARC_CCW : MOVE_ARC_CW;
         m->plane = PLANE_ZX;
         m->centre_mm[0] = centre.at[first];
         m->centre_mm[1] = centre.at[second];
         m->turns = 1;
     }
-    cutter_apply(p, m);
+    takt_cutter_apply(p, m);
     m->contour_side = (uint8_t)m->cutter_side;
     return true;
 }
 
-bool contour_next(struct program *p, struct move *move)
+bool takt_contour_next(struct program *p, struct move *move)
 {
     struct turning_move t;
 
-    while (turning_next(&p->turning, &t)) {
+    while (takt_turning_next(&p->turning, &t)) {
         if (make_move(p, &t, move)) {
             p->modes.at = move->end;
             return true;
@@ -349,18 +350,18 @@ static bool check_moves(struct program *p)
 
     struct turning_move t;
 
-    while (good && turning_next(&p->turning, &t)) {
+    while (good && takt_turning_next(&p->turning, &t)) {
         if (!make_move(p, &t, &m)) {
             continue;
         }
-        good = travel_check(p, &m);
+        good = takt_travel_check(p, &m);
         p->modes.at = m.end;
         if (count++ == MOVES_MAX) {
             good = report(p, TAKT_ERROR_CYCLE_TOO_LONG, MOVES_MAX);
         }
     }
     p->modes = before;
-    turning_begin(&p->turning);
+    takt_turning_begin(&p->turning);
     return good;
 }
 
@@ -380,7 +381,7 @@ static bool begin_cycle(struct program *p)
     return true;
 }
 
-bool contour_follow(struct program *p, bool good)
+bool takt_contour_follow(struct program *p, bool good)
 {
     struct program_contour *c = &p->cycle.contour;
 

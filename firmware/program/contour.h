@@ -9,7 +9,7 @@
 
 /* argument: enum turning_kind, and for G72 CONTOUR_FACING with it */
 #define CONTOUR_FACING 0x10
-bool contour_start(struct program *p, const struct program_code *code);
+bool takt_contour_start(struct program *p, const struct program_code *code);
 
 /* Are lines read for a profile? */
 static inline bool contour_is_open(const struct program *p)
@@ -18,12 +18,12 @@ static inline bool contour_is_open(const struct program *p)
 }
 
 /* The words that have been read, as part of the profile. False: p->error is set. */
-bool contour_take_line(struct program *p);
+bool takt_contour_take_line(struct program *p);
 
 /* A line has been read, well or not. Behind the profile's end the cycle begins. False: p->error is set. */
-bool contour_follow(struct program *p, bool good);
+bool takt_contour_follow(struct program *p, bool good);
 
 /* The next move of a cycle that has begun; false: there is none. */
-bool contour_next(struct program *p, struct move *move);
+bool takt_contour_next(struct program *p, struct move *move);
 
 #endif

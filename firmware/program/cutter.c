@@ -15,7 +15,7 @@ static bool is_on(const struct program *p)
 }
 
 /* A contour has been left: the tool is beside the programmed point, so the next move cannot be an arc. */
-bool cutter_cancel(struct program *p, const struct program_code *code)
+bool takt_cutter_cancel(struct program *p, const struct program_code *code)
 {
     (void)code;
     p->modes.cutter_left = is_on(p) && p->modes.cutter_moved;
@@ -32,10 +32,10 @@ static bool check_plane(struct program *p, const struct program_code *code, uint
     const bool led_aside = orientation != 0 && orientation != ORIENTATION_CENTRE;
 
     if (p->modes.turn.degrees != 0.0 && p->modes.plane != PLANE_XY) {
-        return report_error_code(p, TAKT_ERROR_ARC_TILTED, code->step, p->modes.turn.degrees);
+        return takt_report_error_code(p, TAKT_ERROR_ARC_TILTED, code->step, p->modes.turn.degrees);
     }
     return !led_aside || p->modes.plane == PLANE_ZX ||
-           report_error(p, TAKT_ERROR_CUTTER_ORIENTATION, span, orientation);
+           takt_report_error(p, TAKT_ERROR_CUTTER_ORIENTATION, span, orientation);
 }
 
 /* A negative diameter changes the side. */
@@ -45,7 +45,7 @@ static bool turn_on(struct program *p, const struct program_code *code, double d
     const bool left = (code->argument == CUTTER_LEFT) == (diameter_mm >= 0.0);
 
     if (is_on(p)) {
-        return report_error_code(p, TAKT_ERROR_CUTTER_REPEATED, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_CUTTER_REPEATED, code->step, 0.0);
     }
     if (!check_plane(p, code, orientation, span)) {
         return false;
@@ -59,34 +59,34 @@ static bool turn_on(struct program *p, const struct program_code *code, double d
 }
 
 /* The tool in the spindle, T0, has no radius: nothing is then compensated. */
-bool cutter_use_tool(struct program *p, const struct program_code *code)
+bool takt_cutter_use_tool(struct program *p, const struct program_code *code)
 {
     uint32_t number = p->modes.tool_current;
     struct program_span span = p->words.code_span[code->step];
 
     if (words_has(p, 'd')) {
-        if (!words_whole(p, 'd', 0.0, PROGRAM_TOOL_MAX, &number)) {
+        if (!takt_words_whole(p, 'd', 0.0, PROGRAM_TOOL_MAX, &number)) {
             return false;
         }
         span = p->words.span[LETTER_INDEX('d')];
     }
-    const struct tool *tool = tool_values_find(p, number);
+    const struct tool *tool = takt_tool_values_find(p, number);
 
     if (tool == NULL && number != 0) {
-        return report_error(p, TAKT_ERROR_TOOL_ABSENT, span, number);
+        return takt_report_error(p, TAKT_ERROR_TOOL_ABSENT, span, number);
     }
     return tool == NULL ? turn_on(p, code, 0.0, 0, span)
                         : turn_on(p, code, tool->diameter_mm, tool->orientation, span);
 }
 
-bool cutter_use_diameter(struct program *p, const struct program_code *code)
+bool takt_cutter_use_diameter(struct program *p, const struct program_code *code)
 {
     uint32_t orientation = 0;
 
     if (!words_has(p, 'd')) {
-        return report_error_code(p, TAKT_ERROR_CUTTER_DIAMETER, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_CUTTER_DIAMETER, code->step, 0.0);
     }
-    if (words_has(p, 'l') && !words_whole(p, 'l', 0.0, CUTTER_ORIENTATION_MAX, &orientation)) {
+    if (words_has(p, 'l') && !takt_words_whole(p, 'l', 0.0, CUTTER_ORIENTATION_MAX, &orientation)) {
         return false;
     }
     return turn_on(p, code, words_value(p, 'd') * p->modes.unit_mm, orientation,
@@ -125,16 +125,16 @@ static bool is_forbidden(const struct program *p, const struct program_code *cod
     return (forbidden & (UINT32_C(1) << code->step)) != 0;
 }
 
-bool cutter_allows(struct program *p, const struct program_code *code)
+bool takt_cutter_allows(struct program *p, const struct program_code *code)
 {
     if (!is_on(p) || !is_forbidden(p, code)) {
         return true;
     }
-    return report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
+    return takt_report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
 }
 
-bool cutter_allows_change(struct program *p, const struct program_code *code,
-                          const struct program_modes *before)
+bool takt_cutter_allows_change(struct program *p, const struct program_code *code,
+                               const struct program_modes *before)
 {
     const struct program_modes *now = &p->modes;
 
@@ -144,7 +144,7 @@ bool cutter_allows_change(struct program *p, const struct program_code *code,
                       now->turn.degrees == before->turn.degrees)) {
         return true;
     }
-    return report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
+    return takt_report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
 }
 
 static bool moves_in_plane(const struct program *p, const struct move *m)
@@ -152,12 +152,12 @@ static bool moves_in_plane(const struct program *p, const struct move *m)
     enum axis first;
     enum axis second;
 
-    plane_axes(m->plane, &first, &second);
+    takt_plane_axes(m->plane, &first, &second);
     return move_is_arc(m) || m->end.at[first] != p->modes.at.at[first] ||
            m->end.at[second] != p->modes.at.at[second];
 }
 
-void cutter_apply(struct program *p, struct move *m)
+void takt_cutter_apply(struct program *p, struct move *m)
 {
     p->modes.cutter_left = false;
     if (!is_on(p) || p->modes.cutter_radius_mm == 0.0) {

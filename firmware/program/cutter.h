@@ -8,19 +8,19 @@
 #include "program/program.h"
 
 /* G40 */
-bool cutter_cancel(struct program *p, const struct program_code *code);
+bool takt_cutter_cancel(struct program *p, const struct program_code *code);
 /* G41, G42: the radius of tool D, else of the tool in the spindle; argument: enum cutter_side */
-bool cutter_use_tool(struct program *p, const struct program_code *code);
+bool takt_cutter_use_tool(struct program *p, const struct program_code *code);
 /* G41.1, G42.1: D is the diameter; argument: enum cutter_side */
-bool cutter_use_diameter(struct program *p, const struct program_code *code);
+bool takt_cutter_use_diameter(struct program *p, const struct program_code *code);
 
 /* May this code act now? False: compensation is on and forbids it, p->error is set. */
-bool cutter_allows(struct program *p, const struct program_code *code);
+bool takt_cutter_allows(struct program *p, const struct program_code *code);
 /* After a code has acted: false when it has moved the coordinates of a compensated path, p->error is set. */
-bool cutter_allows_change(struct program *p, const struct program_code *code,
-                          const struct program_modes *before);
+bool takt_cutter_allows_change(struct program *p, const struct program_code *code,
+                               const struct program_modes *before);
 
 /* Gives a motion from the current position side and radius. */
-void cutter_apply(struct program *p, struct move *m);
+void takt_cutter_apply(struct program *p, struct move *m);
 
 #endif

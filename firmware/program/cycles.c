@@ -16,16 +16,16 @@
 /* Rapid into a hole ends so far above where it was cut last, without D: 0.010 inch, as in LinuxCNC. */
 #define PECK_CLEARANCE_MM 0.254
 
-void cycles_open(struct program *p)
+void takt_cycles_open(struct program *p)
 {
     p->cycle.code = NULL;
     p->cycle.spline_open = false;
     p->cycle.contour_open = false;
 }
 
-void cycles_see(struct program *p, const struct program_code *code)
+void takt_cycles_see(struct program *p, const struct program_code *code)
 {
-    if (code->step == STEP_MOTION && code->run != cycles_start) {
+    if (code->step == STEP_MOTION && code->run != takt_cycles_start) {
         p->modes.cycle.initial_known = false;
     }
 }
@@ -38,7 +38,7 @@ static bool keep_word(struct program *p, const struct program_code *code, char l
         *kept = words_value(p, letter) * unit;
         return true;
     }
-    return p->modes.motion == code || report_missing(p, code->step, letter);
+    return p->modes.motion == code || takt_report_missing(p, code->step, letter);
 }
 
 static bool keep_dwell(struct program *p, const struct program_code *code)
@@ -50,7 +50,8 @@ static bool keep_dwell(struct program *p, const struct program_code *code)
         return true;
     }
     return keep_word(p, code, 'p', 1.0, dwell_s) &&
-           (*dwell_s >= 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', *dwell_s));
+           (*dwell_s >= 0.0 ||
+            takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', *dwell_s));
 }
 
 static bool keep_peck(struct program *p, const struct program_code *code)
@@ -61,7 +62,8 @@ static bool keep_peck(struct program *p, const struct program_code *code)
         return true;
     }
     return keep_word(p, code, 'q', p->modes.unit_mm, peck_mm) &&
-           (*peck_mm > 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', *peck_mm));
+           (*peck_mm > 0.0 ||
+            takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', *peck_mm));
 }
 
 /* I J K of G87: offsets in the plane, and the height across it. */
@@ -82,7 +84,7 @@ static bool keep_aside(struct program *p, const struct program_code *code)
 static bool keep_words(struct program *p, const struct program_code *code)
 {
     struct program_cycle_words *w = &p->modes.cycle;
-    const char across = coordinates_letter(p->cycle.axis[2]);
+    const char across = takt_coordinates_letter(p->cycle.axis[2]);
 
     return keep_word(p, code, 'r', p->modes.unit_mm, &w->retract_mm) &&
            keep_word(p, code, across, p->modes.unit_mm, &w->bottom_mm) && keep_dwell(p, code) &&
@@ -102,7 +104,7 @@ static bool check_spindle(struct program *p, const struct program_code *code)
     switch (cycles_kind(code)) {
     case CYCLE_TAP:
         if (turning && direction != tapping_direction(code)) {
-            return report_error_code(p, TAKT_ERROR_SPINDLE_WRONG_WAY, code->step, 0.0);
+            return takt_report_error_code(p, TAKT_ERROR_SPINDLE_WRONG_WAY, code->step, 0.0);
         }
         break;
     case CYCLE_BORE_STOP:
@@ -118,12 +120,12 @@ static bool check_spindle(struct program *p, const struct program_code *code)
     case CYCLE_COUNT:
         return true;
     }
-    return turning || report_error_code(p, TAKT_ERROR_SPINDLE_STANDS, code->step, 0.0);
+    return turning || takt_report_error_code(p, TAKT_ERROR_SPINDLE_STANDS, code->step, 0.0);
 }
 
 static void set_axes(struct program *p, struct program_cycle *c)
 {
-    plane_axes(p->modes.plane, &c->axis[0], &c->axis[1]);
+    takt_plane_axes(p->modes.plane, &c->axis[0], &c->axis[1]);
     c->axis[2] = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - c->axis[0] - c->axis[1]);
 }
 
@@ -132,7 +134,7 @@ static void set_holes(const struct program *p, struct program_cycle *c, const st
 {
     for (unsigned i = 0; i < 2; i++) {
         double word = 0.0;
-        const bool given = coordinates_word(p, c->axis[i], &word);
+        const bool given = takt_coordinates_word(p, c->axis[i], &word);
 
         c->hole_mm[i] = given && !p->modes.incremental ? word : work->at[c->axis[i]];
         c->step_mm[i] = given && p->modes.incremental ? word : 0.0;
@@ -168,22 +170,23 @@ static bool check_size(struct program *p, const struct program_code *code,
     const double depth_mm = c->retract_mm - c->bottom_mm;
 
     if (depth_mm < 0.0) {
-        return report_error_code(p, TAKT_ERROR_CYCLE_UPSIDE_DOWN, code->step, -depth_mm);
+        return takt_report_error_code(p, TAKT_ERROR_CYCLE_UPSIDE_DOWN, code->step, -depth_mm);
     }
     if ((code->words & LETTER_BIT('q')) != 0 && depth_mm > c->peck_mm * PROGRAM_REPEATS_MAX) {
-        return report_error_code(p, TAKT_ERROR_CYCLE_TOO_LONG, code->step, PROGRAM_REPEATS_MAX);
+        return takt_report_error_code(p, TAKT_ERROR_CYCLE_TOO_LONG, code->step,
+                                      PROGRAM_REPEATS_MAX);
     }
     return true;
 }
 
-bool cycles_check_travel(struct program *p, const struct point *work)
+bool takt_cycles_check_travel(struct program *p, const struct point *work)
 {
     struct point end;
     struct move m;
 
-    coordinates_machine_of(p, work, &end);
-    emit_prepare(p, MOVE_RAPID, &end, &m);
-    return travel_check(p, &m);
+    takt_coordinates_machine_of(p, work, &end);
+    takt_emit_prepare(p, MOVE_RAPID, &end, &m);
+    return takt_travel_check(p, &m);
 }
 
 /* The highest and lowest places over the first and the last hole; all others lie between them. */
@@ -194,7 +197,7 @@ static bool check_travel(struct program *p, const struct program_cycle *c)
                                 back ? c->middle_mm : c->bottom_mm};
     struct point work;
 
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     for (unsigned i = 0; i < 4U * (sizeof(height_mm) / sizeof(height_mm[0])); i++) {
         const double steps = (i & 1U) != 0 ? (double)c->repeats - 1.0 : 0.0;
         const double aside = back && (i & 2U) != 0 ? 1.0 : 0.0;
@@ -203,7 +206,7 @@ static bool check_travel(struct program *p, const struct program_cycle *c)
             work.at[c->axis[k]] = c->hole_mm[k] + steps * c->step_mm[k] + aside * c->aside_mm[k];
         }
         work.at[c->axis[2]] = height_mm[i / 4U];
-        if (!cycles_check_travel(p, &work)) {
+        if (!takt_cycles_check_travel(p, &work)) {
             return false;
         }
     }
@@ -216,14 +219,14 @@ static bool prepare_feed(struct program *p, const struct program_code *code,
 {
     const bool tapping = cycles_kind(code) == CYCLE_TAP;
 
-    emit_prepare(p, MOVE_FEED, &p->modes.at, &c->feed);
+    takt_emit_prepare(p, MOVE_FEED, &p->modes.at, &c->feed);
     c->feed.path = PATH_EXACT;
     c->feed.tolerance_mm = 0.0;
     c->feed.merge_mm = 0.0;
     if (tapping) {
         c->feed.overrides &= ~(OVERRIDE_FEED | OVERRIDE_SPINDLE);
     }
-    return emit_set_feed(p, &c->feed);
+    return takt_emit_set_feed(p, &c->feed);
 }
 
 /* From below R the tool first goes straight up to it. */
@@ -238,23 +241,24 @@ static bool rise(struct program *p, struct program_cycle *c, const struct point 
     }
     up.at[c->axis[2]] = c->retract_mm;
     c->start_mm = c->retract_mm;
-    coordinates_machine_of(p, &up, &end);
-    emit_prepare(p, MOVE_RAPID, &end, &m);
-    return emit_motion(p, &m);
+    takt_coordinates_machine_of(p, &up, &end);
+    takt_emit_prepare(p, MOVE_RAPID, &end, &m);
+    return takt_emit_motion(p, &m);
 }
 
 static bool check_use(struct program *p, const struct program_code *code)
 {
     if ((p->words.given & LETTERS_LINEAR) == 0) {
-        return report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
     }
     if (p->modes.inverse_time) {
-        return report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
     }
-    return !words_has(p, 'l') || words_whole(p, 'l', 1.0, PROGRAM_REPEATS_MAX, &p->cycle.repeats);
+    return !words_has(p, 'l') ||
+           takt_words_whole(p, 'l', 1.0, PROGRAM_REPEATS_MAX, &p->cycle.repeats);
 }
 
-bool cycles_start(struct program *p, const struct program_code *code)
+bool takt_cycles_start(struct program *p, const struct program_code *code)
 {
     struct program_cycle *c = &p->cycle;
     struct point work;
@@ -266,7 +270,7 @@ bool cycles_start(struct program *p, const struct program_code *code)
     if (!check_use(p, code) || !keep_words(p, code) || !check_spindle(p, code)) {
         return false;
     }
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     set_holes(p, c, &work);
     set_heights(p, c, &work);
     if (!check_size(p, code, c) || !prepare_feed(p, code, c) || !rise(p, c, &work)) {
@@ -282,8 +286,8 @@ bool cycles_start(struct program *p, const struct program_code *code)
     return true;
 }
 
-bool cycles_move(struct program *p, enum move_kind kind, const struct point *work,
-                 struct move *move)
+bool takt_cycles_move(struct program *p, enum move_kind kind, const struct point *work,
+                      struct move *move)
 {
     *move = p->cycle.feed;
     move->kind = kind;
@@ -292,7 +296,7 @@ bool cycles_move(struct program *p, enum move_kind kind, const struct point *wor
         move->feed_rev_mm = 0.0;
         move->overrides = p->modes.overrides;
     }
-    coordinates_machine_of(p, work, &move->end);
+    takt_coordinates_machine_of(p, work, &move->end);
     if (point_is_same(&move->end, &p->modes.at)) {
         return false;
     }
@@ -300,21 +304,22 @@ bool cycles_move(struct program *p, enum move_kind kind, const struct point *wor
     return true;
 }
 
-bool cycles_next(struct program *p, struct move *move)
+bool takt_cycles_next(struct program *p, struct move *move)
 {
     if (p->cycle.code == NULL || p->cycle.before > 0) {
         return false;
     }
-    if (p->cycle.code->run == spline_start) {
-        return spline_next(p, move);
+    if (p->cycle.code->run == takt_spline_start) {
+        return takt_spline_next(p, move);
     }
-    if (p->cycle.code->run == contour_start) {
-        return contour_next(p, move);
+    if (p->cycle.code->run == takt_contour_start) {
+        return takt_contour_next(p, move);
     }
-    return p->cycle.code->run == cycles_start ? drilling_next(p, move) : threading_next(p, move);
+    return p->cycle.code->run == takt_cycles_start ? takt_drilling_next(p, move)
+                                                   : takt_threading_next(p, move);
 }
 
-void cycles_count_queued(struct program *p)
+void takt_cycles_count_queued(struct program *p)
 {
     if (p->cycle.code != NULL && p->cycle.before > 0) {
         p->cycle.before--;

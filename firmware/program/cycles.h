@@ -26,7 +26,7 @@ enum cycle {
     CYCLE_BORE_WAIT,  /* G89 */
     CYCLE_COUNT
 };
-bool cycles_start(struct program *p, const struct program_code *code);
+bool takt_cycles_start(struct program *p, const struct program_code *code);
 
 static inline enum cycle cycles_kind(const struct program_code *code)
 {
@@ -37,22 +37,22 @@ static inline enum cycle cycles_kind(const struct program_code *code)
 #define WORDS_CYCLE (LETTERS_LINEAR | LETTER_BIT('r') | LETTER_BIT('l'))
 
 /* No cycle is under way. */
-void cycles_open(struct program *p);
+void takt_cycles_open(struct program *p);
 
 /* A code is about to act: any other motion ends a row of cycles. */
-void cycles_see(struct program *p, const struct program_code *code);
+void takt_cycles_see(struct program *p, const struct program_code *code);
 
 /* The next move of the cycle under way, when it is its turn; false: there is none. */
-bool cycles_next(struct program *p, struct move *move);
+bool takt_cycles_next(struct program *p, struct move *move);
 
 /* A move of the queue has been fetched. */
-void cycles_count_queued(struct program *p);
+void takt_cycles_count_queued(struct program *p);
 
 /* For G76: a straight move of the cycle to work coordinates; false: it has no length. */
-bool cycles_move(struct program *p, enum move_kind kind, const struct point *work,
-                 struct move *move);
+bool takt_cycles_move(struct program *p, enum move_kind kind, const struct point *work,
+                      struct move *move);
 
 /* Would the machine leave its travel there? False: p->error is set. */
-bool cycles_check_travel(struct program *p, const struct point *work);
+bool takt_cycles_check_travel(struct program *p, const struct point *work);
 
 #endif

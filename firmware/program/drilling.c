@@ -106,12 +106,12 @@ static bool go(struct program *p, enum move_kind kind, double height, enum place
     const struct program_cycle *c = &p->cycle;
     struct point work;
 
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     for (unsigned i = 0; i < 2; i++) {
         work.at[c->axis[i]] = c->hole_mm[i] + (place == ASIDE ? c->aside_mm[i] : 0.0);
     }
     work.at[c->axis[2]] = height;
-    return cycles_move(p, kind, &work, move);
+    return takt_cycles_move(p, kind, &work, move);
 }
 
 /* One move of the pecks; *done after the last. */
@@ -150,7 +150,7 @@ static bool event(const struct program *p, enum move_kind kind, struct move *mov
 static bool turn(const struct program *p, enum spindle_direction direction, struct move *move)
 {
     (void)event(p, MOVE_SPINDLE, move);
-    events_spindle_move(p, direction, move);
+    takt_events_spindle_move(p, direction, move);
     return true;
 }
 
@@ -213,7 +213,7 @@ static void next_hole(struct program_cycle *c)
     }
 }
 
-bool drilling_next(struct program *p, struct move *move)
+bool takt_drilling_next(struct program *p, struct move *move)
 {
     struct program_cycle *c = &p->cycle;
 

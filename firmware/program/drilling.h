@@ -8,6 +8,6 @@
 #include "program/program.h"
 
 /* The next move of p->cycle; false: the last has been made, and the cycle is over. */
-bool drilling_next(struct program *p, struct move *move);
+bool takt_drilling_next(struct program *p, struct move *move);
 
 #endif

@@ -25,7 +25,7 @@ static void describe(const struct program *p, struct move *m)
 {
     struct point axis_offset = p->modes.axis_offset;
 
-    coordinates_turn(&p->modes.turn, &axis_offset.at[AXIS_X], &axis_offset.at[AXIS_Y]);
+    takt_coordinates_turn(&p->modes.turn, &axis_offset.at[AXIS_X], &axis_offset.at[AXIS_Y]);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         m->work_mm[i] = (float)(p->modes.system_offset.at[i] + axis_offset.at[i]);
         m->overhang_mm[i] = (float)p->modes.tool_offset.at[i];
@@ -33,7 +33,7 @@ static void describe(const struct program *p, struct move *m)
     m->correction_off = p->modes.correction_off;
 }
 
-struct move *emit_event(struct program *p, enum move_kind kind)
+struct move *takt_emit_event(struct program *p, enum move_kind kind)
 {
     assert(p->queue_count < PROGRAM_QUEUE_MAX);
     struct move *m = &p->queue[(p->queue_first + p->queue_count++) % PROGRAM_QUEUE_MAX];
@@ -44,9 +44,9 @@ struct move *emit_event(struct program *p, enum move_kind kind)
     return m;
 }
 
-bool emit_take(struct program *p, struct move *move)
+bool takt_emit_take(struct program *p, struct move *move)
 {
-    if (cycles_next(p, move)) {
+    if (takt_cycles_next(p, move)) {
         return true;
     }
     if (p->queue_count == 0) {
@@ -55,12 +55,12 @@ bool emit_take(struct program *p, struct move *move)
     *move = p->queue[p->queue_first];
     p->queue_first = (p->queue_first + 1) % PROGRAM_QUEUE_MAX;
     p->queue_count--;
-    cycles_count_queued(p);
+    takt_cycles_count_queued(p);
     return true;
 }
 
-void emit_prepare(const struct program *p, enum move_kind kind, const struct point *end,
-                  struct move *m)
+void takt_emit_prepare(const struct program *p, enum move_kind kind, const struct point *end,
+                       struct move *m)
 {
     memset(m, 0, sizeof(*m));
     m->kind = kind;
@@ -106,7 +106,7 @@ static double inverse_time_feed(const struct program *p, const struct move *m)
     struct curve curve;
     const double rate_per_s = words_has(p, 'f') ? words_value(p, 'f') / SECONDS_PER_MINUTE : 0.0;
 
-    return move_curve(m, &p->modes.at, &curve) ? curve.length_mm * rate_per_s : rate_per_s;
+    return takt_move_curve(m, &p->modes.at, &curve) ? curve.length_mm * rate_per_s : rate_per_s;
 }
 
 /*
@@ -116,7 +116,7 @@ static double inverse_time_feed(const struct program *p, const struct move *m)
  */
 static double surface_rpm(const struct program *p)
 {
-    const double x_mm = maths_abs(coordinates_work(p, AXIS_X)) * p->modes.unit_mm;
+    const double x_mm = maths_abs(takt_coordinates_work(p, AXIS_X)) * p->modes.unit_mm;
     const double max_rpm = p->modes.surface_max_rpm != 0.0 ? p->modes.surface_max_rpm : RPM_MAX;
     const double turn_mm = MATHS_TWO_PI * x_mm;
     const double mm_min = p->modes.surface_mm_s * SECONDS_PER_MINUTE;
@@ -140,16 +140,16 @@ static bool follow_spindle(struct program *p, struct move *m)
     const double rpm = spindle_rpm(p);
 
     if (!(rpm > 0.0)) {
-        return report_error(p, TAKT_ERROR_SPINDLE_STANDS, span, 0.0);
+        return takt_report_error(p, TAKT_ERROR_SPINDLE_STANDS, span, 0.0);
     }
-    if (move_is_locked(m) && !p->config.spindle_encoder) {
-        return report_error(p, TAKT_ERROR_SPINDLE_NO_ENCODER, span, 0.0);
+    if (move_is_synchronized(m) && !p->config.spindle_encoder) {
+        return takt_report_error(p, TAKT_ERROR_SPINDLE_NO_ENCODER, span, 0.0);
     }
     m->feed_mm_s = m->feed_rev_mm * rpm / SECONDS_PER_MINUTE;
     return true;
 }
 
-bool emit_set_feed(struct program *p, struct move *m)
+bool takt_emit_set_feed(struct program *p, struct move *m)
 {
     if (p->modes.per_revolution && m->feed_rev_mm == 0.0) {
         m->feed_rev_mm = moves_rotary_only(p, m) ? p->modes.feed_rev_rad : p->modes.feed_rev_mm;
@@ -165,17 +165,18 @@ bool emit_set_feed(struct program *p, struct move *m)
     } else if (!p->modes.per_revolution) {
         m->feed_mm_s = p->modes.feed_mm_s;
     }
-    return m->feed_mm_s > 0.0 || report_error_code(p, TAKT_ERROR_FEED_MISSING, STEP_MOTION, 0.0);
+    return m->feed_mm_s > 0.0 ||
+           takt_report_error_code(p, TAKT_ERROR_FEED_MISSING, STEP_MOTION, 0.0);
 }
 
-bool emit_motion(struct program *p, struct move *m)
+bool takt_emit_motion(struct program *p, struct move *m)
 {
-    cutter_apply(p, m);
+    takt_cutter_apply(p, m);
     m->contour_side = (uint8_t)m->cutter_side;
-    if (!travel_check(p, m) || (m->kind != MOVE_RAPID && !emit_set_feed(p, m))) {
+    if (!takt_travel_check(p, m) || (m->kind != MOVE_RAPID && !takt_emit_set_feed(p, m))) {
         return false;
     }
-    *emit_event(p, m->kind) = *m;
+    *takt_emit_event(p, m->kind) = *m;
     p->modes.at = m->end;
     return true;
 }

@@ -18,13 +18,14 @@ static double axis_x_mm(const struct program *p)
     struct point work;
     struct point machine;
 
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     work.at[AXIS_X] = 0.0;
-    coordinates_machine_of(p, &work, &machine);
+    takt_coordinates_machine_of(p, &work, &machine);
     return machine.at[AXIS_X];
 }
 
-void events_spindle_move(const struct program *p, enum spindle_direction direction, struct move *m)
+void takt_events_spindle_move(const struct program *p, enum spindle_direction direction,
+                              struct move *m)
 {
     const struct program_modes *modes = &p->modes;
 
@@ -39,15 +40,15 @@ void events_spindle_move(const struct program *p, enum spindle_direction directi
     }
 }
 
-void events_tell_spindle(struct program *p)
+void takt_events_tell_spindle(struct program *p)
 {
-    events_spindle_move(p, p->modes.direction, emit_event(p, MOVE_SPINDLE));
+    takt_events_spindle_move(p, p->modes.direction, takt_emit_event(p, MOVE_SPINDLE));
 }
 
 /* The line has code but not the word it needs. */
 static bool lacks(struct program *p, const struct program_code *code, char letter)
 {
-    return !words_has(p, letter) && !report_missing(p, code->step, letter);
+    return !words_has(p, letter) && !takt_report_missing(p, code->step, letter);
 }
 
 /* S with G96: m/min, or feet/min after G20. */
@@ -63,7 +64,8 @@ static void set_speed(struct program *p, double speed_rpm)
     const double max_rpm = p->config.spindle_max_rpm;
 
     if (max_rpm > 0.0 && speed_rpm > max_rpm) {
-        report_warning(p, TAKT_ERROR_SPINDLE_LIMITED, p->words.span[LETTER_INDEX('s')], max_rpm);
+        takt_report_warning(p, TAKT_ERROR_SPINDLE_LIMITED, p->words.span[LETTER_INDEX('s')],
+                            max_rpm);
         speed_rpm = max_rpm;
     }
     p->modes.speed_rpm = speed_rpm;
@@ -82,7 +84,7 @@ static double surface_maximum(const struct program *p)
 }
 
 /* Without S on the line, G97 goes on with the last S that was rev/min. */
-bool events_set_spindle_mode(struct program *p, const struct program_code *code)
+bool takt_events_set_spindle_mode(struct program *p, const struct program_code *code)
 {
     p->modes.surface_speed = code->argument == 1;
     if (p->modes.surface_speed) {
@@ -91,19 +93,19 @@ bool events_set_spindle_mode(struct program *p, const struct program_code *code)
     }
     if (p->modes.direction != SPINDLE_OFF && !words_has(p, 's') &&
         !words_has_step(p, STEP_SPINDLE)) {
-        events_tell_spindle(p);
+        takt_events_tell_spindle(p);
     }
     return true;
 }
 
 /* The spindle hears of a new speed at once, unless a word of this line turns it anyway or it stands. */
-bool events_set_speed(struct program *p, const struct program_code *code)
+bool takt_events_set_speed(struct program *p, const struct program_code *code)
 {
     const double speed = words_value(p, 's');
 
     (void)code;
     if (speed < 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 's', speed);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 's', speed);
     }
     if (p->modes.surface_speed) {
         set_surface_speed(p, speed);
@@ -111,33 +113,33 @@ bool events_set_speed(struct program *p, const struct program_code *code)
         set_speed(p, speed);
     }
     if (p->modes.direction != SPINDLE_OFF && !words_has_step(p, STEP_SPINDLE)) {
-        events_tell_spindle(p);
+        takt_events_tell_spindle(p);
     }
     return true;
 }
 
-bool events_select_tool(struct program *p, const struct program_code *code)
+bool takt_events_select_tool(struct program *p, const struct program_code *code)
 {
     (void)code;
-    if (!words_whole(p, 't', 0.0, PROGRAM_TOOL_MAX, &p->modes.tool_selected)) {
+    if (!takt_words_whole(p, 't', 0.0, PROGRAM_TOOL_MAX, &p->modes.tool_selected)) {
         return false;
     }
     p->modes.tool_is_selected = true;
-    emit_event(p, MOVE_TOOL)->tool = p->modes.tool_selected;
+    takt_emit_event(p, MOVE_TOOL)->tool = p->modes.tool_selected;
     return true;
 }
 
 /* Nobody changes a tool that turns. */
-bool events_change_tool(struct program *p, const struct program_code *code)
+bool takt_events_change_tool(struct program *p, const struct program_code *code)
 {
     if (!p->modes.tool_is_selected) {
-        return report_error_code(p, TAKT_ERROR_TOOL_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_TOOL_MISSING, code->step, 0.0);
     }
     if (p->modes.direction != SPINDLE_OFF) {
         p->modes.direction = SPINDLE_OFF;
-        events_tell_spindle(p);
+        takt_events_tell_spindle(p);
     }
-    struct move *m = emit_event(p, MOVE_TOOL);
+    struct move *m = takt_emit_event(p, MOVE_TOOL);
 
     m->tool = p->modes.tool_selected;
     m->tool_change = true;
@@ -145,13 +147,13 @@ bool events_change_tool(struct program *p, const struct program_code *code)
     return true;
 }
 
-bool events_load_tool(struct program *p, const struct program_code *code)
+bool takt_events_load_tool(struct program *p, const struct program_code *code)
 {
     if (lacks(p, code, 'q') ||
-        !words_whole(p, 'q', 0.0, PROGRAM_TOOL_MAX, &p->modes.tool_current)) {
+        !takt_words_whole(p, 'q', 0.0, PROGRAM_TOOL_MAX, &p->modes.tool_current)) {
         return false;
     }
-    struct move *m = emit_event(p, MOVE_TOOL);
+    struct move *m = takt_emit_event(p, MOVE_TOOL);
 
     m->tool = p->modes.tool_current;
     m->tool_loaded = true;
@@ -159,7 +161,7 @@ bool events_load_tool(struct program *p, const struct program_code *code)
 }
 
 /* Without R and P it only stops. */
-bool events_orient_spindle(struct program *p, const struct program_code *code)
+bool takt_events_orient_spindle(struct program *p, const struct program_code *code)
 {
     const double degrees = words_has(p, 'r') ? words_value(p, 'r') : 0.0;
     const double timeout_s = words_has(p, 'q') ? words_value(p, 'q') : 0.0;
@@ -168,19 +170,19 @@ bool events_orient_spindle(struct program *p, const struct program_code *code)
     (void)code;
     if (!words_has(p, 'r') && !words_has(p, 'p')) {
         p->modes.direction = SPINDLE_OFF;
-        events_tell_spindle(p);
+        takt_events_tell_spindle(p);
         return true;
     }
     if (degrees < 0.0 || degrees > DEGREES_MAX) {
-        return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'r', degrees);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'r', degrees);
     }
-    if (words_has(p, 'p') && !words_whole(p, 'p', ORIENT_SHORTEST, ORIENT_CCW, &way)) {
+    if (words_has(p, 'p') && !takt_words_whole(p, 'p', ORIENT_SHORTEST, ORIENT_CCW, &way)) {
         return false;
     }
     if (words_has(p, 'q') && timeout_s <= 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', timeout_s);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', timeout_s);
     }
-    struct move *m = emit_event(p, MOVE_ORIENT);
+    struct move *m = takt_emit_event(p, MOVE_ORIENT);
 
     m->orient_rad = degrees * RAD_PER_DEGREE;
     m->orient_way = (enum orient_way)way;
@@ -189,18 +191,18 @@ bool events_orient_spindle(struct program *p, const struct program_code *code)
     return true;
 }
 
-bool events_set_output(struct program *p, const struct program_code *code)
+bool takt_events_set_output(struct program *p, const struct program_code *code)
 {
     const bool analogue = (code->argument & OUTPUT_ANALOGUE) != 0;
     const char letter = analogue ? 'e' : 'p';
     const double highest = analogue ? PROGRAM_ANALOGUE_MAX : PROGRAM_DIGITAL_MAX;
     uint32_t channel;
 
-    if (lacks(p, code, letter) || !words_whole(p, letter, 0.0, highest, &channel) ||
+    if (lacks(p, code, letter) || !takt_words_whole(p, letter, 0.0, highest, &channel) ||
         (analogue && lacks(p, code, 'q'))) {
         return false;
     }
-    struct move *m = emit_event(p, MOVE_OUTPUT);
+    struct move *m = takt_emit_event(p, MOVE_OUTPUT);
 
     m->channel = channel;
     m->analogue = analogue;
@@ -217,18 +219,18 @@ static bool read_wait(struct program *p, const struct program_code *code, uint32
 
     *wait = INPUT_READ;
     *timeout_s = words_has(p, 'q') ? words_value(p, 'q') : 0.0;
-    if (words_has(p, 'l') && !words_whole(p, 'l', INPUT_READ, highest, wait)) {
+    if (words_has(p, 'l') && !takt_words_whole(p, 'l', INPUT_READ, highest, wait)) {
         return false;
     }
     if (*wait == INPUT_READ || *timeout_s > 0.0) {
         return true;
     }
     return !lacks(p, code, 'q') &&
-           report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', *timeout_s);
+           takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', *timeout_s);
 }
 
-/* The input is 0 (#5399) until program_answer says what it is. */
-bool events_read_input(struct program *p, const struct program_code *code)
+/* The input is 0 (#5399) until takt_program_answer says what it is. */
+bool takt_events_read_input(struct program *p, const struct program_code *code)
 {
     const bool analogue = words_has(p, 'e');
     const char letter = analogue ? 'e' : 'p';
@@ -238,74 +240,74 @@ bool events_read_input(struct program *p, const struct program_code *code)
     double timeout_s;
 
     if (analogue && words_has(p, 'p')) {
-        return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, 'p', 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_UNUSED, 'p', 0.0);
     }
-    if (lacks(p, code, letter) || !words_whole(p, letter, 0.0, highest, &channel) ||
+    if (lacks(p, code, letter) || !takt_words_whole(p, letter, 0.0, highest, &channel) ||
         !read_wait(p, code, &wait, &timeout_s)) {
         return false;
     }
-    struct move *m = emit_event(p, MOVE_INPUT);
+    struct move *m = takt_emit_event(p, MOVE_INPUT);
 
     m->channel = channel;
     m->analogue = analogue;
     m->input_wait = (enum input_wait)wait;
     m->timeout_s = timeout_s;
-    return words_store(p, code->step, PARAMETER_INPUT, 0.0);
+    return takt_words_store(p, code->step, PARAMETER_INPUT, 0.0);
 }
 
-bool events_turn_spindle(struct program *p, const struct program_code *code)
+bool takt_events_turn_spindle(struct program *p, const struct program_code *code)
 {
     p->modes.direction = (enum spindle_direction)code->argument;
-    events_tell_spindle(p);
+    takt_events_tell_spindle(p);
     return true;
 }
 
-void events_tell_coolant(struct program *p)
+void takt_events_tell_coolant(struct program *p)
 {
-    struct move *m = emit_event(p, MOVE_COOLANT);
+    struct move *m = takt_emit_event(p, MOVE_COOLANT);
 
     m->mist = p->modes.mist;
     m->flood = p->modes.flood;
 }
 
-bool events_set_coolant(struct program *p, const struct program_code *code)
+bool takt_events_set_coolant(struct program *p, const struct program_code *code)
 {
     struct program_modes *modes = &p->modes;
 
     modes->mist = code->argument == COOLANT_MIST || (modes->mist && code->argument != COOLANT_OFF);
     modes->flood =
         code->argument == COOLANT_FLOOD || (modes->flood && code->argument != COOLANT_OFF);
-    events_tell_coolant(p);
+    takt_events_tell_coolant(p);
     return true;
 }
 
-bool events_dwell(struct program *p, const struct program_code *code)
+bool takt_events_dwell(struct program *p, const struct program_code *code)
 {
     if (!words_has(p, 'p')) {
-        return report_error_code(p, TAKT_ERROR_DWELL_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_DWELL_MISSING, code->step, 0.0);
     }
     const double seconds = words_value(p, 'p');
 
     if (seconds < 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', seconds);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', seconds);
     }
-    emit_event(p, MOVE_DWELL)->dwell_s = seconds;
+    takt_emit_event(p, MOVE_DWELL)->dwell_s = seconds;
     return true;
 }
 
-bool events_stop(struct program *p, const struct program_code *code)
+bool takt_events_stop(struct program *p, const struct program_code *code)
 {
-    emit_event(p, MOVE_STOP)->optional = code->argument == 1;
+    takt_emit_event(p, MOVE_STOP)->optional = code->argument == 1;
     return true;
 }
 
 /* The next program starts in G54 again. */
-bool events_end(struct program *p, const struct program_code *code)
+bool takt_events_end(struct program *p, const struct program_code *code)
 {
-    if (!words_store(p, code->step, PARAMETER_SYSTEM, 1.0)) {
+    if (!takt_words_store(p, code->step, PARAMETER_SYSTEM, 1.0)) {
         return false;
     }
-    emit_event(p, MOVE_END);
+    takt_emit_event(p, MOVE_END);
     p->phase = PROGRAM_ENDED;
     return true;
 }

@@ -12,22 +12,22 @@
 /* How far a value that must be whole may be from it. */
 #define WHOLE_MAX 1e-4
 
-bool expression_whole(double value, double *whole)
+bool takt_expression_whole(double value, double *whole)
 {
-    *whole = maths_round(value);
+    *whole = takt_maths_round(value);
     return maths_abs(value - *whole) <= WHOLE_MAX;
 }
 
 /* About what stands before the next character; the caller has read something. */
 static bool missing_here(struct program *p, enum takt_error code)
 {
-    return report_error_at(p, code, p->lexer.at - 1U, 0.0);
+    return takt_report_error_at(p, code, p->lexer.at - 1U, 0.0);
 }
 
 static bool read_number(struct program *p, double *value)
 {
     struct program_lexer *l = &p->lexer;
-    const size_t count = decimal_read(l->text + l->at, (size_t)(l->length - l->at), value);
+    const size_t count = takt_decimal_read(l->text + l->at, (size_t)(l->length - l->at), value);
 
     if (count == 0) {
         return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
@@ -60,17 +60,17 @@ static bool apply_operator(struct program *p, struct pending *pending, double *v
     const enum takt_error code = operation->apply(left, *value, value);
 
     if (code != TAKT_OK) {
-        return report_error(p, code, span, left);
+        return takt_report_error(p, code, span, left);
     }
     return maths_is_finite(*value) ||
-           report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, span, *value);
+           takt_report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, span, *value);
 }
 
 /* NULL after an error. */
 static const struct operation_entry *read_operator(struct program *p)
 {
     struct program_lexer *l = &p->lexer;
-    const struct operation_entry *next = operation_find(l->text + l->at);
+    const struct operation_entry *next = takt_operation_find(l->text + l->at);
 
     if (next == NULL) {
         (void)missing_here(p, l->text[l->at] == '\0' ? TAKT_ERROR_BRACKET_UNCLOSED
@@ -101,11 +101,11 @@ static bool read_bracket(struct program *p, double *value)
     const struct operation_entry *next;
 
     pending.count = 0;
-    if (!lexer_accept(&p->lexer, '[')) {
+    if (!takt_lexer_accept(&p->lexer, '[')) {
         return missing_here(p, TAKT_ERROR_BRACKET_EXPECTED);
     }
     for (;;) {
-        if (!expression_read(p, value)) {
+        if (!takt_expression_read(p, value)) {
             return false;
         }
         next = read_operator(p);
@@ -136,8 +136,8 @@ static bool read_name(struct program *p, struct program_reference *reference)
     reference->span = span_from(p, begin);
     const unsigned length = l->at - begin;
 
-    if (!lexer_accept(l, '>') || length == 0 || length > PROGRAM_NAME_MAX) {
-        return report_error_at(p, TAKT_ERROR_PARAMETER_NAME, begin - 1U, PROGRAM_NAME_MAX);
+    if (!takt_lexer_accept(l, '>') || length == 0 || length > PROGRAM_NAME_MAX) {
+        return takt_report_error_at(p, TAKT_ERROR_PARAMETER_NAME, begin - 1U, PROGRAM_NAME_MAX);
     }
     return true;
 }
@@ -147,14 +147,14 @@ static bool read_reference(struct program *p, struct program_reference *referenc
 {
     const unsigned begin = p->lexer.at - 1U;
 
-    if (lexer_accept(&p->lexer, '<')) {
+    if (takt_lexer_accept(&p->lexer, '<')) {
         return read_name(p, reference);
     }
-    if (!expression_read(p, value)) {
+    if (!takt_expression_read(p, value)) {
         return false;
     }
     double number;
-    const bool whole = expression_whole(*value, &number);
+    const bool whole = takt_expression_whole(*value, &number);
 
     reference->span = span_from(p, begin);
     reference->number =
@@ -162,22 +162,23 @@ static bool read_reference(struct program *p, struct program_reference *referenc
     return true;
 }
 
-bool expression_read_reference(struct program *p, struct program_reference *reference)
+bool takt_expression_read_reference(struct program *p, struct program_reference *reference)
 {
     const bool named = p->lexer.text[p->lexer.at] == '<';
     double value = 0.0;
 
     return read_reference(p, reference, &value) &&
            (named || reference->number != 0 ||
-            report_error(p, TAKT_ERROR_PARAMETER_NUMBER, reference->span, value));
+            takt_report_error(p, TAKT_ERROR_PARAMETER_NUMBER, reference->span, value));
 }
 
-bool expression_find_named(const struct program *p, const char *name, size_t length, double *value)
+bool takt_expression_find_named(const struct program *p, const char *name, size_t length,
+                                double *value)
 {
-    const int place = names_find(&p->names, name, length);
+    const int place = takt_names_find(&p->names, name, length);
 
     if (place < 0) {
-        return predefined_get(p, name, length, value);
+        return takt_predefined_get(p, name, length, value);
     }
     *value = p->names.value[place];
     return true;
@@ -186,8 +187,8 @@ bool expression_find_named(const struct program *p, const char *name, size_t len
 static bool find_named(const struct program *p, const struct program_reference *reference,
                        double *value)
 {
-    return expression_find_named(p, p->lexer.text + reference->span.begin,
-                                 (size_t)(reference->span.end - reference->span.begin), value);
+    return takt_expression_find_named(p, p->lexer.text + reference->span.begin,
+                                      (size_t)(reference->span.end - reference->span.begin), value);
 }
 
 static bool read_parameter(struct program *p, double *value)
@@ -195,15 +196,15 @@ static bool read_parameter(struct program *p, double *value)
     struct program_reference reference = {0};
 
     p->lexer.at++;
-    if (!expression_read_reference(p, &reference)) {
+    if (!takt_expression_read_reference(p, &reference)) {
         return false;
     }
     if (reference.number != 0) {
-        *value = system_parameter_get(p, reference.number);
+        *value = takt_system_parameter_get(p, reference.number);
         return true;
     }
     return find_named(p, &reference, value) ||
-           report_error(p, TAKT_ERROR_PARAMETER_UNDEFINED, reference.span, 0.0);
+           takt_report_error(p, TAKT_ERROR_PARAMETER_UNDEFINED, reference.span, 0.0);
 }
 
 static bool read_atan(struct program *p, double *value)
@@ -213,13 +214,13 @@ static bool read_atan(struct program *p, double *value)
     if (!read_bracket(p, value)) {
         return false;
     }
-    if (!lexer_accept(&p->lexer, '/')) {
+    if (!takt_lexer_accept(&p->lexer, '/')) {
         return missing_here(p, TAKT_ERROR_SLASH_EXPECTED);
     }
     if (!read_bracket(p, &x)) {
         return false;
     }
-    *value = calculation_atan(*value, x);
+    *value = takt_calculation_atan(*value, x);
     return true;
 }
 
@@ -229,7 +230,7 @@ static bool read_exists(struct program *p, double *value)
     struct program_reference reference = {0};
 
     p->lexer.at++;
-    if (!lexer_accept(&p->lexer, '#')) {
+    if (!takt_lexer_accept(&p->lexer, '#')) {
         return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
     }
     const bool named = p->lexer.text[p->lexer.at] == '<';
@@ -237,7 +238,7 @@ static bool read_exists(struct program *p, double *value)
     if (!read_reference(p, &reference, value)) {
         return false;
     }
-    if (!lexer_accept(&p->lexer, ']')) {
+    if (!takt_lexer_accept(&p->lexer, ']')) {
         return missing_here(p, TAKT_ERROR_BRACKET_UNCLOSED);
     }
     *value = reference.number != 0 || (named && find_named(p, &reference, value)) ? 1.0 : 0.0;
@@ -248,7 +249,7 @@ static bool read_function(struct program *p, double *value)
 {
     struct program_lexer *l = &p->lexer;
     const unsigned begin = l->at;
-    const struct function_entry *function = function_find(l->text + begin);
+    const struct function_entry *function = takt_function_find(l->text + begin);
 
     if (function == NULL) {
         return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
@@ -260,10 +261,10 @@ static bool read_function(struct program *p, double *value)
     const struct program_span span = span_from(p, begin);
 
     if (l->at != begin + function->length) {
-        return report_error(p, TAKT_ERROR_FUNCTION_UNKNOWN, span, 0.0);
+        return takt_report_error(p, TAKT_ERROR_FUNCTION_UNKNOWN, span, 0.0);
     }
     if (l->text[l->at] != '[') {
-        return report_error(p, TAKT_ERROR_BRACKET_EXPECTED, span, 0.0);
+        return takt_report_error(p, TAKT_ERROR_BRACKET_EXPECTED, span, 0.0);
     }
     if (function->apply == NULL) {
         return function->name[0] == 'a' ? read_atan(p, value) : read_exists(p, value);
@@ -274,7 +275,7 @@ static bool read_function(struct program *p, double *value)
     const double x = *value;
     const enum takt_error code = function->apply(x, value);
 
-    return code == TAKT_OK || report_error(p, code, span, x);
+    return code == TAKT_OK || takt_report_error(p, code, span, x);
 }
 
 static bool read_sign(struct program_lexer *l)
@@ -304,13 +305,13 @@ static bool read_unsigned(struct program *p, double *value)
     return read_number(p, value);
 }
 
-bool expression_read(struct program *p, double *value)
+bool takt_expression_read(struct program *p, double *value)
 {
     struct program_lexer *l = &p->lexer;
     const unsigned begin = l->at;
 
     if (l->nesting == PROGRAM_NESTING_MAX) {
-        return report_error_at(p, TAKT_ERROR_NESTING_TOO_DEEP, begin, PROGRAM_NESTING_MAX);
+        return takt_report_error_at(p, TAKT_ERROR_NESTING_TOO_DEEP, begin, PROGRAM_NESTING_MAX);
     }
     l->nesting++;
     const bool negative = read_sign(l);
@@ -320,7 +321,7 @@ bool expression_read(struct program *p, double *value)
     }
     l->nesting--;
     if (!maths_is_finite(*value)) {
-        return report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, span_from(p, begin), *value);
+        return takt_report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, span_from(p, begin), *value);
     }
     if (negative) {
         *value = -*value;

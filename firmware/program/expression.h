@@ -13,17 +13,18 @@
 #include "program/program.h"
 
 /* Reads a value from the line. It is finite. False: p->error is set. */
-bool expression_read(struct program *p, double *value);
+bool takt_expression_read(struct program *p, double *value);
 
 /* Reads a reference; '#' is read already. The number is checked, a name need not be known. */
-bool expression_read_reference(struct program *p, struct program_reference *reference);
+bool takt_expression_read_reference(struct program *p, struct program_reference *reference);
 
 /* The parameter of a name that has been set, or a predefined one. False: there is none. */
-bool expression_find_named(const struct program *p, const char *name, size_t length, double *value);
+bool takt_expression_find_named(const struct program *p, const char *name, size_t length,
+                                double *value);
 
 /*
  * The nearest integer to value when it is within 0.0001 of it, as for all values that must be whole.
  */
-bool expression_whole(double value, double *whole);
+bool takt_expression_whole(double value, double *whole);
 
 #endif

@@ -12,12 +12,12 @@
 /* As good as for ever. */
 #define ROUNDS_MAX 4e9
 
-void flow_open(struct program *p)
+void takt_flow_open(struct program *p)
 {
     memset(&p->flow, 0, sizeof(p->flow));
 }
 
-void flow_fail(struct program *p)
+void takt_flow_fail(struct program *p)
 {
     struct program_flow *f = &p->flow;
 
@@ -29,9 +29,9 @@ void flow_fail(struct program *p)
     }
 }
 
-bool flow_jump(struct program *p, const struct program_place *place, const struct oword *o)
+bool takt_flow_jump(struct program *p, const struct program_place *place, const struct oword *o)
 {
-    return lexer_seek(&p->lexer, place) || oword_error(p, TAKT_ERROR_JUMP_BACK, o, 0.0);
+    return takt_lexer_seek(&p->lexer, place) || takt_oword_error(p, TAKT_ERROR_JUMP_BACK, o, 0.0);
 }
 
 /* Blocks below this one belong to callers. */
@@ -69,17 +69,17 @@ static struct program_block *open_block(struct program *p, const struct oword *o
     const struct program_block *same = find_block(p, o);
 
     if (same != NULL) {
-        (void)oword_error(p, TAKT_ERROR_OWORD_LABEL_USED, o, same->line);
+        (void)takt_oword_error(p, TAKT_ERROR_OWORD_LABEL_USED, o, same->line);
         return NULL;
     }
     if (f->blocks == PROGRAM_BLOCKS_MAX) {
-        (void)oword_error(p, TAKT_ERROR_OWORD_TOO_DEEP, o, PROGRAM_BLOCKS_MAX);
+        (void)takt_oword_error(p, TAKT_ERROR_OWORD_TOO_DEEP, o, PROGRAM_BLOCKS_MAX);
         return NULL;
     }
     struct program_block *b = &f->block[f->blocks++];
 
     *b = (struct program_block){.label = o->label,
-                                .again = lexer_place(&p->lexer).offset,
+                                .again = takt_lexer_place(&p->lexer).offset,
                                 .line = o->line,
                                 .column = o->column,
                                 .kind = (uint8_t)o->kind};
@@ -93,11 +93,11 @@ static struct program_block *block_of(struct program *p, const struct oword *o,
     struct program_block *b = find_block(p, o);
 
     if (b == NULL || b->kind != (uint8_t)kind) {
-        (void)oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
+        (void)takt_oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
         return NULL;
     }
     if (b != innermost(p)) {
-        (void)oword_error(p, TAKT_ERROR_OWORD_CROSSED, o, innermost(p)->line);
+        (void)takt_oword_error(p, TAKT_ERROR_OWORD_CROSSED, o, innermost(p)->line);
         return NULL;
     }
     return b;
@@ -108,16 +108,16 @@ static bool jump_again(struct program *p, const struct program_block *b, const s
 {
     const struct program_place again = {b->again, b->kind == OWORD_WHILE ? b->line - 1 : b->line};
 
-    return flow_jump(p, &again, o);
+    return takt_flow_jump(p, &again, o);
 }
 
 /* The value in brackets behind the keyword, and nothing else. */
 static bool read_value(struct program *p, const struct oword *o, double *value)
 {
     if (p->lexer.text[p->lexer.at] != '[') {
-        return oword_error(p, TAKT_ERROR_BRACKET_EXPECTED, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_BRACKET_EXPECTED, o, 0.0);
     }
-    return expression_read(p, value) && oword_finish(p, o);
+    return takt_expression_read(p, value) && takt_oword_finish(p, o);
 }
 
 /* A branch begins when its condition holds. One that cannot be read does not begin, nor do those behind it. */
@@ -165,7 +165,7 @@ static bool take_else(struct program *p, const struct oword *o)
     }
     p->flow.skip = b->done ? SKIP_TO_END : SKIP_NOTHING;
     b->done = true;
-    return oword_finish(p, o);
+    return takt_oword_finish(p, o);
 }
 
 static bool take_endif(struct program *p, const struct oword *o)
@@ -174,7 +174,7 @@ static bool take_endif(struct program *p, const struct oword *o)
         return false;
     }
     close_block(p);
-    return oword_finish(p, o);
+    return takt_oword_finish(p, o);
 }
 
 /* Enters the loop or passes it over. What would be repeated needs a source that can go back. */
@@ -183,12 +183,12 @@ static bool enter_loop(struct program *p, const struct oword *o, struct program_
 {
     b->done = !enters;
     p->flow.skip = enters ? SKIP_NOTHING : SKIP_TO_END;
-    if (!repeats || lexer_can_seek(&p->lexer)) {
+    if (!repeats || takt_lexer_can_seek(&p->lexer)) {
         return true;
     }
     b->done = true;
     p->flow.skip = SKIP_TO_END;
-    return oword_error(p, TAKT_ERROR_JUMP_BACK, o, 0.0);
+    return takt_oword_error(p, TAKT_ERROR_JUMP_BACK, o, 0.0);
 }
 
 /* The end of DO. */
@@ -204,7 +204,7 @@ static bool take_do_while(struct program *p, const struct oword *o, const struct
     }
     const bool good = read_value(p, o, &value);
 
-    if (!good || value == 0.0 || p->flow.failed || !lexer_can_seek(&p->lexer)) {
+    if (!good || value == 0.0 || p->flow.failed || !takt_lexer_can_seek(&p->lexer)) {
         close_block(p);
     }
     if (!good || value == 0.0 || p->flow.failed) {
@@ -227,7 +227,7 @@ static bool take_while(struct program *p, const struct oword *o)
     if (b == NULL) {
         return false;
     }
-    b->again = lexer_this_line(&p->lexer).offset;
+    b->again = takt_lexer_this_line(&p->lexer).offset;
     if (!read_value(p, o, &value)) {
         (void)enter_loop(p, o, b, false, false);
         return false;
@@ -245,12 +245,12 @@ static bool take_endwhile(struct program *p, const struct oword *o)
     const bool leaves = b->done || p->flow.failed;
 
     close_block(p);
-    return oword_finish(p, o) && (leaves || jump_again(p, b, o));
+    return takt_oword_finish(p, o) && (leaves || jump_again(p, b, o));
 }
 
 static bool take_do(struct program *p, const struct oword *o)
 {
-    return open_block(p, o) != NULL && oword_finish(p, o);
+    return open_block(p, o) != NULL && takt_oword_finish(p, o);
 }
 
 static bool take_repeat(struct program *p, const struct oword *o)
@@ -265,7 +265,7 @@ static bool take_repeat(struct program *p, const struct oword *o)
         (void)enter_loop(p, o, b, false, false);
         return false;
     }
-    const double rounds = maths_round(maths_min(value, ROUNDS_MAX));
+    const double rounds = takt_maths_round(maths_min(value, ROUNDS_MAX));
 
     b->left = rounds >= 1.0 ? (uint32_t)rounds - 1U : 0U;
     return enter_loop(p, o, b, rounds >= 1.0, b->left > 0);
@@ -275,7 +275,7 @@ static bool take_endrepeat(struct program *p, const struct oword *o)
 {
     struct program_block *b = block_of(p, o, OWORD_REPEAT);
 
-    if (b == NULL || !oword_finish(p, o)) {
+    if (b == NULL || !takt_oword_finish(p, o)) {
         return false;
     }
     if (b->done || b->left == 0 || p->flow.failed) {
@@ -293,9 +293,9 @@ static bool leave_round(struct program *p, const struct oword *o)
     struct program_block *b = find_block(p, o);
 
     if (b == NULL || b->kind == OWORD_IF) {
-        return oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
     }
-    if (!oword_finish(p, o)) {
+    if (!takt_oword_finish(p, o)) {
         return false;
     }
     p->flow.blocks = (uint8_t)(b - p->flow.block + 1);
@@ -313,12 +313,12 @@ static bool take_goto(struct program *p, const struct oword *o)
     double line;
     double blocks;
 
-    if (!expression_read(p, &line) || !expression_read(p, &blocks)) {
+    if (!takt_expression_read(p, &line) || !takt_expression_read(p, &blocks)) {
         return false;
     }
     if (!(blocks >= 0.0 && first_block(p) + blocks <= p->flow.blocks) ||
         !(line >= 1.0 && line <= PROGRAM_LABEL_MAX)) {
-        return oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
+        return takt_oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
     }
     if (p->flow.failed) {
         return true;
@@ -326,15 +326,15 @@ static bool take_goto(struct program *p, const struct oword *o)
     const struct program_place place = {o->label.id, (uint32_t)line - 1U};
 
     p->flow.blocks = (uint8_t)(first_block(p) + (unsigned)blocks);
-    return flow_jump(p, &place, o);
+    return takt_flow_jump(p, &place, o);
 }
 
 static bool (*const actions[])(struct program *, const struct oword *) = {
-    [OWORD_PROGRAM] = calls_begin_program,
-    [OWORD_SUB] = calls_define,
-    [OWORD_ENDSUB] = calls_return,
-    [OWORD_RETURN] = calls_return,
-    [OWORD_CALL] = calls_call,
+    [OWORD_PROGRAM] = takt_calls_begin_program,
+    [OWORD_SUB] = takt_calls_define,
+    [OWORD_ENDSUB] = takt_calls_return,
+    [OWORD_RETURN] = takt_calls_return,
+    [OWORD_CALL] = takt_calls_call,
     [OWORD_IF] = take_if,
     [OWORD_ELSEIF] = take_elseif,
     [OWORD_ELSE] = take_else,
@@ -384,7 +384,7 @@ static bool pass_block(struct program *p, const struct oword *o)
     if (is_end_of(b, o->kind) || (p->flow.skip == SKIP_TO_BRANCH && is_branch(o->kind))) {
         return actions[o->kind](p, o);
     }
-    return !opens_block(o->kind) || oword_error(p, TAKT_ERROR_OWORD_LABEL_USED, o, b->line);
+    return !opens_block(o->kind) || takt_oword_error(p, TAKT_ERROR_OWORD_LABEL_USED, o, b->line);
 }
 
 /* What stands in lines that are passed over need not be right; a label may be one that cannot be worked out. */
@@ -392,46 +392,46 @@ static bool pass_over(struct program *p)
 {
     struct oword o;
 
-    if (!oword_read(p, &o)) {
+    if (!takt_oword_read(p, &o)) {
         return true;
     }
     if ((o.kind == OWORD_SUB || o.kind == OWORD_PROGRAM) &&
-        !(oword_keep(p, &o) && calls_note(p, &o))) {
+        !(takt_oword_keep(p, &o) && takt_calls_note(p, &o))) {
         return false;
     }
     if (p->flow.skip == SKIP_TO_SUB || p->flow.skip == SKIP_TO_ENDSUB) {
-        return calls_pass(p, &o);
+        return takt_calls_pass(p, &o);
     }
     return pass_block(p, &o);
 }
 
-bool flow_take(struct program *p)
+bool takt_flow_take(struct program *p)
 {
     struct oword o;
 
     if (flow_is_skipping(p)) {
         return pass_over(p);
     }
-    return oword_read(p, &o) && oword_keep(p, &o) && actions[o.kind](p, &o);
+    return takt_oword_read(p, &o) && takt_oword_keep(p, &o) && actions[o.kind](p, &o);
 }
 
 /* A program that means to run for ever has been read for long enough. */
 static bool stop_reading(struct program *p)
 {
-    report_warning(p, TAKT_ERROR_REPEATS, (struct program_span){0, 0}, p->config.repeats_max);
+    takt_report_warning(p, TAKT_ERROR_REPEATS, (struct program_span){0, 0}, p->config.repeats_max);
     p->phase = PROGRAM_ENDED;
-    emit_event(p, MOVE_END);
+    takt_emit_event(p, MOVE_END);
     return true;
 }
 
-bool flow_count_line(struct program *p)
+bool takt_flow_count_line(struct program *p)
 {
     struct program_flow *f = &p->flow;
 
-    const uint64_t offset = lexer_this_line(&p->lexer).offset;
+    const uint64_t offset = takt_lexer_this_line(&p->lexer).offset;
 
     if (offset >= f->furthest.offset) {
-        f->furthest = offset == f->furthest.offset ? lexer_place(&p->lexer) : f->furthest;
+        f->furthest = offset == f->furthest.offset ? takt_lexer_place(&p->lexer) : f->furthest;
         return true;
     }
     f->lines_repeated++;
@@ -439,32 +439,33 @@ bool flow_count_line(struct program *p)
         if (f->restarted) {
             return stop_reading(p);
         }
-        diagnostic_set(&p->error, TAKT_ERROR_ENDLESS, p->lexer.line, 0, "", 0,
-                       p->config.repeats_max);
+        takt_diagnostic_set(&p->error, TAKT_ERROR_ENDLESS, p->lexer.line, 0, "", 0,
+                            p->config.repeats_max);
         return false;
     }
     if (f->lines_again++ < PROGRAM_CIRCLE_LINES_MAX) {
         return true;
     }
     if (p->approach.pending) {
-        diagnostic_set(&p->error, TAKT_ERROR_FROM_LINE_MISSED, 0, 0, "", 0, p->config.from_line);
+        takt_diagnostic_set(&p->error, TAKT_ERROR_FROM_LINE_MISSED, 0, 0, "", 0,
+                            p->config.from_line);
     } else {
-        diagnostic_set(&p->error, TAKT_ERROR_CIRCLE, p->lexer.line, 0, "", 0,
-                       PROGRAM_CIRCLE_LINES_MAX);
+        takt_diagnostic_set(&p->error, TAKT_ERROR_CIRCLE, p->lexer.line, 0, "", 0,
+                            PROGRAM_CIRCLE_LINES_MAX);
     }
     return false;
 }
 
-bool flow_end_of_text(struct program *p)
+bool takt_flow_end_of_text(struct program *p)
 {
     struct program_flow *f = &p->flow;
 
     f->all_seen = true;
     if (f->skip == SKIP_TO_SUB || f->skip == SKIP_TO_ENDSUB || f->blocks == first_block(p)) {
-        return calls_end_of_text(p);
+        return takt_calls_end_of_text(p);
     }
     const struct program_block *b = innermost(p);
     const struct oword o = {(enum oword_kind)b->kind, b->label, b->line, b->column};
 
-    return oword_error(p, TAKT_ERROR_OWORD_UNCLOSED, &o, 0.0);
+    return takt_oword_error(p, TAKT_ERROR_OWORD_UNCLOSED, &o, 0.0);
 }

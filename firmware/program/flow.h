@@ -10,7 +10,7 @@
 
 #include "program/oword.h"
 
-void flow_open(struct program *p);
+void takt_flow_open(struct program *p);
 
 static inline bool flow_is_skipping(const struct program *p)
 {
@@ -18,20 +18,20 @@ static inline bool flow_is_skipping(const struct program *p)
 }
 
 /* Does what the O-word of the current line says, whose O is read. False: p->error is set. */
-bool flow_take(struct program *p);
+bool takt_flow_take(struct program *p);
 
 /*
  * Counts the line that has been read. False: too many were read again without a move in between, p->error is set.
  */
-bool flow_count_line(struct program *p);
+bool takt_flow_count_line(struct program *p);
 
 /* The text is at its end. False: something is open, p->error says what; the end may have been taken back. */
-bool flow_end_of_text(struct program *p);
+bool takt_flow_end_of_text(struct program *p);
 
 /* There has been an error: nothing is repeated from now on, and no subroutine called a second time. */
-void flow_fail(struct program *p);
+void takt_flow_fail(struct program *p);
 
 /* Goes back to a place, as o says. False: p->error is set. */
-bool flow_jump(struct program *p, const struct program_place *place, const struct oword *o);
+bool takt_flow_jump(struct program *p, const struct program_place *place, const struct oword *o);
 
 #endif

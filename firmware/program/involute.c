@@ -28,7 +28,7 @@ static struct polar polar_of(const struct point *point, enum axis first, enum ax
     const double x = point->at[first] - centre_mm[0];
     const double y = point->at[second] - centre_mm[1];
 
-    return (struct polar){maths_sqrt(x * x + y * y), maths_atan2(y, x)};
+    return (struct polar){maths_sqrt(x * x + y * y), takt_maths_atan2(y, x)};
 }
 
 /* inv = phi - atan phi, phi = sqrt((d/r)^2 - 1); 0 inside the base circle. */
@@ -41,7 +41,7 @@ static double unrolled_rad(double distance_mm, double radius_mm)
     }
     const double phi = maths_sqrt((ratio - 1.0) * (ratio + 1.0));
 
-    return phi - maths_atan2(phi, 1.0);
+    return phi - takt_maths_atan2(phi, 1.0);
 }
 
 /* Distance of the end from the involute through the start, between neighbouring turns at most. */
@@ -53,76 +53,77 @@ static double deviation_mm(const struct polar *start, const struct polar *end, d
     const double turned = (end->angle_rad - start->angle_rad) * (clockwise ? -1.0 : 1.0);
     const double off = turned - needed;
 
-    return radius_mm * maths_abs(off - MATHS_TWO_PI * maths_round(off / MATHS_TWO_PI));
+    return radius_mm * maths_abs(off - MATHS_TWO_PI * takt_maths_round(off / MATHS_TWO_PI));
 }
 
 static bool check_ends(struct program *p, const struct move *m, const struct polar *start,
                        const struct polar *end)
 {
-    const double slack_mm = circular_slack_mm(p);
+    const double slack_mm = takt_circular_slack_mm(p);
     const double radius_mm = m->base_radius_mm;
     const double inside_mm = radius_mm - maths_min(slack_mm, INSIDE_MAX_RATIO * radius_mm);
 
     if (start->radius_mm < inside_mm) {
-        return report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
-                                 radius_mm - start->radius_mm);
+        return takt_report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
+                                      radius_mm - start->radius_mm);
     }
     if (end->radius_mm < inside_mm) {
-        return report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION,
-                                 radius_mm - end->radius_mm);
+        return takt_report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION,
+                                      radius_mm - end->radius_mm);
     }
     const double far_mm = maths_max(start->radius_mm, end->radius_mm);
 
     if (maths_abs(end->radius_mm - start->radius_mm) <=
         maths_max(CLOSED_MM, CLOSED_RATIO * far_mm)) {
-        return report_error_code(p, TAKT_ERROR_INVOLUTE_CLOSED, STEP_MOTION, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_INVOLUTE_CLOSED, STEP_MOTION, 0.0);
     }
     if (far_mm <= radius_mm) {
-        return report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
-                                 radius_mm - start->radius_mm);
+        return takt_report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
+                                      radius_mm - start->radius_mm);
     }
     const double turns = far_mm / radius_mm / MATHS_TWO_PI;
 
     if (turns > TURNS_MAX) {
-        return report_error_letter(p, TAKT_ERROR_INVOLUTE_TURNS, 'r', maths_floor(turns));
+        return takt_report_error_letter(p, TAKT_ERROR_INVOLUTE_TURNS, 'r', takt_maths_floor(turns));
     }
     const double off_mm = deviation_mm(start, end, radius_mm, m->kind == MOVE_INVOLUTE_CW);
 
-    return off_mm <= slack_mm || report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION, off_mm);
+    return off_mm <= slack_mm ||
+           takt_report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION, off_mm);
 }
 
 static bool check_words(struct program *p, const struct program_code *code, enum axis first,
                         enum axis second)
 {
-    if (!circular_check_plane(p, first, second)) {
+    if (!takt_circular_check_plane(p, first, second)) {
         return false;
     }
     if ((p->words.given & LETTERS_CENTRE) == 0) {
-        return report_missing(p, code->step, (char)('i' + (int)first));
+        return takt_report_missing(p, code->step, (char)('i' + (int)first));
     }
     if (!words_has(p, 'r')) {
-        return report_missing(p, code->step, 'r');
+        return takt_report_missing(p, code->step, 'r');
     }
     return words_value(p, 'r') > 0.0 ||
-           report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'r', words_value(p, 'r'));
+           takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'r', words_value(p, 'r'));
 }
 
-bool involute_move(struct program *p, const struct program_code *code)
+bool takt_involute_move(struct program *p, const struct program_code *code)
 {
     enum axis first;
     enum axis second;
     struct point end;
     struct move m;
 
-    plane_axes(p->modes.plane, &first, &second);
+    takt_plane_axes(p->modes.plane, &first, &second);
     if (!check_words(p, code, first, second)) {
         return false;
     }
-    coordinates_end(p, &end);
-    emit_prepare(p, (enum move_kind)code->argument, &end, &m);
+    takt_coordinates_end(p, &end);
+    takt_emit_prepare(p, (enum move_kind)code->argument, &end, &m);
     m.plane = p->modes.plane;
     m.base_radius_mm = words_value(p, 'r') * p->modes.unit_mm;
-    if (!circular_centre(p, first, second, m.centre_mm)) {
+    if (!takt_circular_centre(p, first, second, m.centre_mm)) {
         return false;
     }
     const struct polar from = polar_of(&p->modes.at, first, second, m.centre_mm);
@@ -132,5 +133,5 @@ bool involute_move(struct program *p, const struct program_code *code)
         return false;
     }
     p->modes.motion = code;
-    return emit_motion(p, &m);
+    return takt_emit_motion(p, &m);
 }

@@ -19,6 +19,6 @@
 #include "program/program.h"
 
 /* argument: MOVE_INVOLUTE_CW or MOVE_INVOLUTE_CCW */
-bool involute_move(struct program *p, const struct program_code *code);
+bool takt_involute_move(struct program *p, const struct program_code *code);
 
 #endif

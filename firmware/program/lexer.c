@@ -9,7 +9,7 @@ struct scan {
     bool failed;
 };
 
-void lexer_open(struct program_lexer *l, const struct source *source)
+void takt_lexer_open(struct program_lexer *l, const struct source *source)
 {
     l->source = *source;
     l->input_at = 0;
@@ -38,7 +38,7 @@ static long fill(struct program_lexer *l)
     return count;
 }
 
-bool lexer_can_go_on(struct program_lexer *l)
+bool takt_lexer_can_go_on(struct program_lexer *l)
 {
     return fill(l) != SOURCE_LATER;
 }
@@ -59,7 +59,7 @@ static void fail(const struct program_lexer *l, struct scan *s, struct diagnosti
                  enum takt_error code, uint32_t column, char c)
 {
     if (!s->failed) {
-        diagnostic_set(error, code, l->line, column, &c, 1, PROGRAM_LINE_MAX);
+        takt_diagnostic_set(error, code, l->line, column, &c, 1, PROGRAM_LINE_MAX);
         s->failed = true;
     }
 }
@@ -72,8 +72,8 @@ static void fail_unprintable(const struct program_lexer *l, struct scan *s,
     const char word[] = {'0', 'x', digits[c >> 4], digits[c & 15U]};
 
     if (!s->failed) {
-        diagnostic_set(error, TAKT_ERROR_CHARACTER_UNKNOWN, l->line, s->column, word, sizeof(word),
-                       0.0);
+        takt_diagnostic_set(error, TAKT_ERROR_CHARACTER_UNKNOWN, l->line, s->column, word,
+                            sizeof(word), 0.0);
         s->failed = true;
     }
 }
@@ -112,7 +112,7 @@ static void scan_comment(struct program_lexer *l, struct scan *s, char c)
     }
 }
 
-char lexer_comment(const struct program_lexer *l, unsigned at)
+char takt_lexer_comment(const struct program_lexer *l, unsigned at)
 {
     return (char)(at < l->comment_length ? l->text[PROGRAM_LINE_MAX - at] : '\0');
 }
@@ -153,7 +153,7 @@ static void close_line(struct program_lexer *l, struct scan *s, struct diagnosti
     l->end_column = s->failed || s->column >= UINT16_MAX ? 0 : (uint16_t)(s->column + 1);
 }
 
-enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error)
+enum lexer_result takt_lexer_next_line(struct program_lexer *l, struct diagnostic *error)
 {
     struct scan s = {0};
 
@@ -178,39 +178,39 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
         c = next_byte(l);
     }
     if (c == SOURCE_ERROR) {
-        diagnostic_set(error, TAKT_ERROR_SOURCE_UNREADABLE, l->line, 0, "", 0, 0.0);
+        takt_diagnostic_set(error, TAKT_ERROR_SOURCE_UNREADABLE, l->line, 0, "", 0, 0.0);
         return LEXER_UNREADABLE;
     }
     close_line(l, &s, error);
     return s.failed ? LEXER_ERROR : LEXER_LINE;
 }
 
-uint16_t lexer_column(const struct program_lexer *l, unsigned at)
+uint16_t takt_lexer_column(const struct program_lexer *l, unsigned at)
 {
     return at < l->length ? (uint16_t)(at + l->dropped[at] + 1U) : l->end_column;
 }
 
-struct program_place lexer_place(const struct program_lexer *l)
+struct program_place takt_lexer_place(const struct program_lexer *l)
 {
     return (struct program_place){l->input_offset + l->input_at, l->line};
 }
 
-struct program_place lexer_this_line(const struct program_lexer *l)
+struct program_place takt_lexer_this_line(const struct program_lexer *l)
 {
     return (struct program_place){l->line_offset, l->line - 1};
 }
 
-bool lexer_can_seek(const struct program_lexer *l)
+bool takt_lexer_can_seek(const struct program_lexer *l)
 {
     return l->source.seek != NULL;
 }
 
 /* Short jumps stay inside what has been read already. */
-bool lexer_seek(struct program_lexer *l, const struct program_place *place)
+bool takt_lexer_seek(struct program_lexer *l, const struct program_place *place)
 {
     const uint64_t offset = place->offset;
 
-    if (!lexer_can_seek(l)) {
+    if (!takt_lexer_can_seek(l)) {
         return false;
     }
     if (offset >= l->input_offset && offset <= l->input_offset + l->input_length) {
@@ -227,7 +227,7 @@ bool lexer_seek(struct program_lexer *l, const struct program_place *place)
     return true;
 }
 
-bool lexer_accept(struct program_lexer *l, char c)
+bool takt_lexer_accept(struct program_lexer *l, char c)
 {
     if (l->text[l->at] != c) {
         return false;

@@ -11,35 +11,35 @@
 
 enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };
 
-void lexer_open(struct program_lexer *l, const struct source *source);
+void takt_lexer_open(struct program_lexer *l, const struct source *source);
 
 /* False: what comes next has not come yet (SOURCE_LATER). */
-bool lexer_can_go_on(struct program_lexer *l);
+bool takt_lexer_can_go_on(struct program_lexer *l);
 
 /*
  * Reads the next line whole, whatever its length. LEXER_ERROR: *error says what is wrong with it; the one after it
  * can be read. LEXER_UNREADABLE: the source fails.
  */
-enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error);
+enum lexer_result takt_lexer_next_line(struct program_lexer *l, struct diagnostic *error);
 
 /* A character of the line's last comment, as it stands there; 0 behind its end. */
-char lexer_comment(const struct program_lexer *l, unsigned at);
+char takt_lexer_comment(const struct program_lexer *l, unsigned at);
 
 /* The column, from 1, of a character of the current line or of its end. */
-uint16_t lexer_column(const struct program_lexer *l, unsigned at);
+uint16_t takt_lexer_column(const struct program_lexer *l, unsigned at);
 
 /* Where the line after the current one begins. */
-struct program_place lexer_place(const struct program_lexer *l);
+struct program_place takt_lexer_place(const struct program_lexer *l);
 
 /* Where the current line begins. */
-struct program_place lexer_this_line(const struct program_lexer *l);
+struct program_place takt_lexer_this_line(const struct program_lexer *l);
 
-bool lexer_can_seek(const struct program_lexer *l);
+bool takt_lexer_can_seek(const struct program_lexer *l);
 
-/* Goes on at a place lexer_place gave. False: the source cannot go there. */
-bool lexer_seek(struct program_lexer *l, const struct program_place *place);
+/* Goes on at a place takt_lexer_place gave. False: the source cannot go there. */
+bool takt_lexer_seek(struct program_lexer *l, const struct program_place *place);
 
 /* True and past it, when the line goes on with c. */
-bool lexer_accept(struct program_lexer *l, char c);
+bool takt_lexer_accept(struct program_lexer *l, char c);
 
 #endif

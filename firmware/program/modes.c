@@ -25,7 +25,7 @@ static void go_on(struct program *p)
     p->config.modes = NULL;
 }
 
-void modes_open(struct program *p)
+void takt_modes_open(struct program *p)
 {
     if (p->config.modes != NULL) {
         go_on(p);
@@ -42,7 +42,7 @@ void modes_open(struct program *p)
 }
 
 /* An F of the other mode means nothing in this one. */
-bool modes_set_feed_mode(struct program *p, const struct program_code *code)
+bool takt_modes_set_feed_mode(struct program *p, const struct program_code *code)
 {
     struct program_modes *m = &p->modes;
     const bool inverse_time = code->argument == FEED_INVERSE_TIME;
@@ -60,13 +60,13 @@ bool modes_set_feed_mode(struct program *p, const struct program_code *code)
 }
 
 /* With G93 the F of a line is for its motion alone, which reads it itself. */
-bool modes_set_feed(struct program *p, const struct program_code *code)
+bool takt_modes_set_feed(struct program *p, const struct program_code *code)
 {
     const double feed = words_value(p, 'f');
 
     (void)code;
     if (feed < 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'f', feed);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'f', feed);
     }
     if (p->modes.per_revolution) {
         p->modes.feed_rev_mm = feed * p->modes.unit_mm;
@@ -78,13 +78,13 @@ bool modes_set_feed(struct program *p, const struct program_code *code)
     return true;
 }
 
-bool modes_set_plane(struct program *p, const struct program_code *code)
+bool takt_modes_set_plane(struct program *p, const struct program_code *code)
 {
     p->modes.plane = (enum plane)code->argument;
     return true;
 }
 
-bool modes_set_units(struct program *p, const struct program_code *code)
+bool takt_modes_set_units(struct program *p, const struct program_code *code)
 {
     p->modes.unit_mm = code->argument == 1 ? MM_PER_INCH : 1.0;
     return true;
@@ -96,7 +96,7 @@ static bool set_merge(struct program *p)
     const double merge = words_has(p, 'q') ? words_value(p, 'q') : 0.0;
 
     p->modes.merge_mm = words_has(p, 'q') ? merge * p->modes.unit_mm : p->modes.tolerance_mm;
-    return merge >= 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'q', merge);
+    return merge >= 0.0 || takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'q', merge);
 }
 
 static bool set_tolerance(struct program *p)
@@ -108,10 +108,11 @@ static bool set_tolerance(struct program *p)
     const double tolerance = words_value(p, 'p');
 
     p->modes.tolerance_mm = tolerance * p->modes.unit_mm;
-    return tolerance >= 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', tolerance);
+    return tolerance >= 0.0 ||
+           takt_report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', tolerance);
 }
 
-bool modes_set_path(struct program *p, const struct program_code *code)
+bool takt_modes_set_path(struct program *p, const struct program_code *code)
 {
     p->modes.path = (enum move_path)code->argument;
     if (p->modes.path != PATH_BLEND) {
@@ -123,25 +124,25 @@ bool modes_set_path(struct program *p, const struct program_code *code)
     return set_tolerance(p) && set_merge(p);
 }
 
-bool modes_set_distance(struct program *p, const struct program_code *code)
+bool takt_modes_set_distance(struct program *p, const struct program_code *code)
 {
     p->modes.incremental = code->argument == 1;
     return true;
 }
 
-bool modes_set_centre(struct program *p, const struct program_code *code)
+bool takt_modes_set_centre(struct program *p, const struct program_code *code)
 {
     p->modes.centre_absolute = code->argument == 1;
     return true;
 }
 
-bool modes_set_diameter(struct program *p, const struct program_code *code)
+bool takt_modes_set_diameter(struct program *p, const struct program_code *code)
 {
     p->modes.diameter = code->argument == 1;
     return true;
 }
 
-bool modes_set_retract(struct program *p, const struct program_code *code)
+bool takt_modes_set_retract(struct program *p, const struct program_code *code)
 {
     p->modes.retract_to_r = code->argument == 1;
     return true;
@@ -152,28 +153,28 @@ static void switch_overrides(struct program *p, unsigned which, bool on)
     p->modes.overrides = on ? p->modes.overrides | which : p->modes.overrides & ~which;
 }
 
-bool modes_set_overrides(struct program *p, const struct program_code *code)
+bool takt_modes_set_overrides(struct program *p, const struct program_code *code)
 {
     switch_overrides(p, OVERRIDE_FEED | OVERRIDE_SPINDLE, code->argument == 1);
     return true;
 }
 
 /* On without P, and with any P but 0. */
-bool modes_set_override(struct program *p, const struct program_code *code)
+bool takt_modes_set_override(struct program *p, const struct program_code *code)
 {
     switch_overrides(p, (unsigned)code->argument, !words_has(p, 'p') || words_value(p, 'p') != 0.0);
     return true;
 }
 
 /* Layer P of position-error correction, from 1; without P all of them. */
-bool modes_set_correction(struct program *p, const struct program_code *code)
+bool takt_modes_set_correction(struct program *p, const struct program_code *code)
 {
     const uint32_t layers = p->config.correction_layers;
     uint32_t layer = 0;
     unsigned which = (1U << layers) - 1U;
 
     if (words_has(p, 'p')) {
-        if (!words_whole(p, 'p', 1.0, layers, &layer)) {
+        if (!takt_words_whole(p, 'p', 1.0, layers, &layer)) {
             return false;
         }
         which = 1U << (layer - 1U);
@@ -183,7 +184,7 @@ bool modes_set_correction(struct program *p, const struct program_code *code)
     return true;
 }
 
-bool modes_accept(struct program *p, const struct program_code *code)
+bool takt_modes_accept(struct program *p, const struct program_code *code)
 {
     (void)p;
     (void)code;

@@ -176,23 +176,23 @@ static inline bool move_is_involute(const struct move *m)
 }
 
 /* No line between its ends? */
-static inline bool move_is_bent(const struct move *m)
+static inline bool move_is_curved(const struct move *m)
 {
     return move_is_arc(m) || move_is_involute(m) || m->kind == MOVE_SPLINE;
 }
 
 /* Does its position follow the spindle's angle, and not only its feed the spindle's speed? */
-static inline bool move_kind_is_locked(enum move_kind kind)
+static inline bool move_kind_is_synchronized(enum move_kind kind)
 {
     return kind == MOVE_THREAD || kind == MOVE_TAP || kind == MOVE_TAP_OUT;
 }
 
-static inline bool move_is_locked(const struct move *m)
+static inline bool move_is_synchronized(const struct move *m)
 {
-    return move_kind_is_locked(m->kind);
+    return move_kind_is_synchronized(m->kind);
 }
 
 /* The geometry of a motion that starts at start. False when it has no length. */
-bool move_curve(const struct move *m, const struct point *start, struct curve *c);
+bool takt_move_curve(const struct move *m, const struct point *start, struct curve *c);
 
 #endif

@@ -28,7 +28,7 @@ static unsigned size_at(const struct program_names *names, unsigned place)
     return end + 1 - place;
 }
 
-uint16_t names_place(struct program_names *names, const char *text, size_t length)
+uint16_t takt_names_place(struct program_names *names, const char *text, size_t length)
 {
     unsigned place = 0;
 
@@ -89,7 +89,7 @@ static void drop_texts(struct program *p)
     names->text_length = (uint16_t)kept;
 }
 
-bool names_keep(struct program *p, uint16_t *place)
+bool takt_names_keep(struct program *p, uint16_t *place)
 {
     struct program_names *names = &p->names;
     const unsigned size = size_at(names, *place);
@@ -111,7 +111,7 @@ bool names_keep(struct program *p, uint16_t *place)
 
 /* -- parameters -- */
 
-int names_find(const struct program_names *names, const char *name, size_t length)
+int takt_names_find(const struct program_names *names, const char *name, size_t length)
 {
     const uint8_t call = call_of(names, name);
 
@@ -123,7 +123,7 @@ int names_find(const struct program_names *names, const char *name, size_t lengt
     return -1;
 }
 
-double *names_add(struct program *p, const char *name, size_t length)
+double *takt_names_add(struct program *p, const char *name, size_t length)
 {
     struct program_names *names = &p->names;
     uint16_t place;
@@ -131,8 +131,8 @@ double *names_add(struct program *p, const char *name, size_t length)
     if (names->count == PROGRAM_NAMES_MAX) {
         return NULL;
     }
-    place = names_place(names, name, length);
-    if (!names_keep(p, &place)) {
+    place = takt_names_place(names, name, length);
+    if (!takt_names_keep(p, &place)) {
         return NULL;
     }
     const unsigned i = names->count++;
@@ -143,12 +143,12 @@ double *names_add(struct program *p, const char *name, size_t length)
     return &names->value[i];
 }
 
-void names_enter_call(struct program_names *names)
+void takt_names_enter_call(struct program_names *names)
 {
     names->call++;
 }
 
-void names_leave_call(struct program_names *names)
+void takt_names_leave_call(struct program_names *names)
 {
     unsigned kept = 0;
 

@@ -11,22 +11,22 @@
 #include "program/program.h"
 
 /* Which it is of the globals and the locals of the current call; -1 when nothing of that name has been set. */
-int names_find(const struct program_names *names, const char *name, size_t length);
+int takt_names_find(const struct program_names *names, const char *name, size_t length);
 
 /* Adds a name that is not there, with the value 0; NULL when there is no room. */
-double *names_add(struct program *p, const char *name, size_t length);
+double *takt_names_add(struct program *p, const char *name, size_t length);
 
-/* Where a text is. It stays there until another is asked for, or for good after names_keep. */
-uint16_t names_place(struct program_names *names, const char *text, size_t length);
+/* Where a text is. It stays there until another is asked for, or for good after takt_names_keep. */
+uint16_t takt_names_place(struct program_names *names, const char *text, size_t length);
 
 /*
  * Keeps the text at a place, which may then be another, for as long as anything is named by it. False: there is no room.
  * Until it names something no other may be kept.
  */
-bool names_keep(struct program *p, uint16_t *place);
+bool takt_names_keep(struct program *p, uint16_t *place);
 
 /* A call begins without local names, and they end with it. */
-void names_enter_call(struct program_names *names);
-void names_leave_call(struct program_names *names);
+void takt_names_enter_call(struct program_names *names);
+void takt_names_leave_call(struct program_names *names);
 
 #endif

@@ -33,7 +33,7 @@ static const struct keyword keywords[] = {
 
 #define KEYWORDS (sizeof(keywords) / sizeof(keywords[0]))
 
-bool oword_begins(struct program *p)
+bool takt_oword_begins(struct program *p)
 {
     struct program_lexer *l = &p->lexer;
     unsigned at = l->at;
@@ -50,24 +50,24 @@ bool oword_begins(struct program *p)
     return true;
 }
 
-bool oword_keep(struct program *p, struct oword *o)
+bool takt_oword_keep(struct program *p, struct oword *o)
 {
     uint16_t place = (uint16_t)o->label.id;
 
     if (o->label.id < PROGRAM_LABEL_NAME) {
         return true;
     }
-    const bool kept = names_keep(p, &place);
+    const bool kept = takt_names_keep(p, &place);
 
     o->label.id = PROGRAM_LABEL_NAME | place;
-    return kept || oword_error(p, TAKT_ERROR_PROGRAM_FULL, o, 0.0);
+    return kept || takt_oword_error(p, TAKT_ERROR_PROGRAM_FULL, o, 0.0);
 }
 
 static bool wrong_label(struct program *p, unsigned begin)
 {
     const struct program_span span = {(uint16_t)begin, p->lexer.at};
 
-    return report_error(p, TAKT_ERROR_OWORD_LABEL, span, PROGRAM_NAME_MAX);
+    return takt_report_error(p, TAKT_ERROR_OWORD_LABEL, span, PROGRAM_NAME_MAX);
 }
 
 /* The number a name is, as it would be written: <100> is 100. PROGRAM_LABEL_NAME: it is none. */
@@ -98,12 +98,12 @@ static bool read_name(struct program *p, struct program_label *label)
     }
     const unsigned length = l->at - begin;
 
-    if (length == 0 || !lexer_accept(l, '>')) {
+    if (length == 0 || !takt_lexer_accept(l, '>')) {
         return wrong_label(p, begin - 2);
     }
     label->id = number_of(name, length);
     if (label->id == PROGRAM_LABEL_NAME) {
-        label->id |= names_place(&p->names, name, length);
+        label->id |= takt_names_place(&p->names, name, length);
     }
     return true;
 }
@@ -115,13 +115,13 @@ static bool read_label(struct program *p, struct program_label *label)
     double value;
     double number;
 
-    if (lexer_accept(&p->lexer, '<')) {
+    if (takt_lexer_accept(&p->lexer, '<')) {
         return read_name(p, label);
     }
-    if (!expression_read(p, &value)) {
+    if (!takt_expression_read(p, &value)) {
         return false;
     }
-    if (!expression_whole(value, &number) || number < 0.0 || number > PROGRAM_LABEL_MAX) {
+    if (!takt_expression_whole(value, &number) || number < 0.0 || number > PROGRAM_LABEL_MAX) {
         return wrong_label(p, begin - 1);
     }
     label->id = (uint32_t)number;
@@ -160,20 +160,20 @@ static bool read_keyword(struct program *p, enum oword_kind *kind)
     do {
         l->at++;
     } while (l->text[l->at] >= 'a' && l->text[l->at] <= 'z');
-    return report_error(p, TAKT_ERROR_OWORD_UNKNOWN, (struct program_span){(uint16_t)begin, l->at},
-                        0.0);
+    return takt_report_error(p, TAKT_ERROR_OWORD_UNKNOWN,
+                             (struct program_span){(uint16_t)begin, l->at}, 0.0);
 }
 
-bool oword_read(struct program *p, struct oword *o)
+bool takt_oword_read(struct program *p, struct oword *o)
 {
     o->line = p->lexer.line;
-    o->column = lexer_column(&p->lexer, p->lexer.at - 1U);
+    o->column = takt_lexer_column(&p->lexer, p->lexer.at - 1U);
     return read_label(p, &o->label) && read_keyword(p, &o->kind);
 }
 
-bool oword_finish(struct program *p, const struct oword *o)
+bool takt_oword_finish(struct program *p, const struct oword *o)
 {
-    return p->lexer.at == p->lexer.length || oword_error(p, TAKT_ERROR_OWORD_ALONE, o, 0.0);
+    return p->lexer.at == p->lexer.length || takt_oword_error(p, TAKT_ERROR_OWORD_ALONE, o, 0.0);
 }
 
 /* Adds text in capitals, cut at the end of the word's room. */
@@ -234,10 +234,10 @@ static size_t describe(const struct program *p, char *word, const struct oword *
     return add(word, length, keyword);
 }
 
-bool oword_error(struct program *p, enum takt_error code, const struct oword *o, double value)
+bool takt_oword_error(struct program *p, enum takt_error code, const struct oword *o, double value)
 {
     char word[DIAGNOSTIC_WORD_MAX];
 
-    diagnostic_set(&p->error, code, o->line, o->column, word, describe(p, word, o), value);
+    takt_diagnostic_set(&p->error, code, o->line, o->column, word, describe(p, word, o), value);
     return false;
 }

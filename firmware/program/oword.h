@@ -30,22 +30,22 @@ enum oword_kind {
 
 struct oword {
     enum oword_kind kind;
-    struct program_label label; /* its name stays for the line; oword_keep */
+    struct program_label label; /* its name stays for the line; takt_oword_keep */
     uint32_t line;              /* where it stands */
     uint16_t column;
 };
 
 /* True when the line is an O-word, after an N and its number perhaps; the lexer is then behind the O. */
-bool oword_begins(struct program *p);
+bool takt_oword_begins(struct program *p);
 
 /* Reads label and keyword. False: p->error is set. */
-bool oword_read(struct program *p, struct oword *o);
+bool takt_oword_read(struct program *p, struct oword *o);
 
 /* Nothing but what has been read may stand on an O-word's line. */
-bool oword_finish(struct program *p, const struct oword *o);
+bool takt_oword_finish(struct program *p, const struct oword *o);
 
 /* The label stays for as long as a block or a subroutine has it. False: no room, p->error is set. */
-bool oword_keep(struct program *p, struct oword *o);
+bool takt_oword_keep(struct program *p, struct oword *o);
 
 static inline bool oword_same_label(const struct program_label *a, const struct program_label *b)
 {
@@ -53,6 +53,6 @@ static inline bool oword_same_label(const struct program_label *a, const struct 
 }
 
 /* Sets p->error about an O-word, by label and keyword ("O100 ENDIF"). Returns false. */
-bool oword_error(struct program *p, enum takt_error code, const struct oword *o, double value);
+bool takt_oword_error(struct program *p, enum takt_error code, const struct oword *o, double value);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-void parameters_clear(struct parameters *p)
+void takt_parameters_clear(struct parameters *p)
 {
     memset(p, 0, sizeof(*p));
 }
@@ -30,7 +30,7 @@ static bool holds(const struct parameters *p, unsigned position, unsigned number
     return position < p->count && p->number[position] == number;
 }
 
-double parameters_get(const struct parameters *p, unsigned number)
+double takt_parameters_get(const struct parameters *p, unsigned number)
 {
     if (number <= PARAMETERS_LOCAL) {
         return p->local[number - 1];
@@ -72,7 +72,7 @@ static bool make_room(struct parameters *p)
     return p->count < PARAMETERS_MAX;
 }
 
-bool parameters_set(struct parameters *p, unsigned number, double value)
+bool takt_parameters_set(struct parameters *p, unsigned number, double value)
 {
     if (number <= PARAMETERS_LOCAL) {
         p->local[number - 1] = value;
@@ -94,7 +94,7 @@ bool parameters_set(struct parameters *p, unsigned number, double value)
     return true;
 }
 
-bool parameters_next(const struct parameters *p, unsigned *number, double *value)
+bool takt_parameters_next(const struct parameters *p, unsigned *number, double *value)
 {
     for (unsigned n = *number + 1; n <= PARAMETERS_LOCAL; n++) {
         if (p->local[n - 1] != 0.0) {

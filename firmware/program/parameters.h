@@ -41,17 +41,17 @@ struct parameters {
 };
 
 /* All parameters 0. */
-void parameters_clear(struct parameters *p);
+void takt_parameters_clear(struct parameters *p);
 
 /* 0 for a number that was never set. number: 1 ... PARAMETER_NUMBER_MAX. */
-double parameters_get(const struct parameters *p, unsigned number);
+double takt_parameters_get(const struct parameters *p, unsigned number);
 
 /* False when there is no room. Setting 0 never needs room. */
-bool parameters_set(struct parameters *p, unsigned number, double value);
+bool takt_parameters_set(struct parameters *p, unsigned number, double value);
 
 /*
  * The next parameter after *number that is not 0, for saving: true, *number and *value; start with *number = 0.
  */
-bool parameters_next(const struct parameters *p, unsigned *number, double *value);
+bool takt_parameters_next(const struct parameters *p, unsigned *number, double *value);
 
 #endif

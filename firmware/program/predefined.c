@@ -212,13 +212,13 @@ static double get_selected_tool(const struct program *p, int argument)
 
 static double get_position(const struct program *p, int argument)
 {
-    return coordinates_work(p, (enum axis)argument);
+    return takt_coordinates_work(p, (enum axis)argument);
 }
 
 static double get_machine_position(const struct program *p, int argument)
 {
     const enum axis axis = (enum axis)argument;
-    const double value = coordinates_to_parameter(p->modes.at.at[axis], axis);
+    const double value = takt_coordinates_to_parameter(p->modes.at.at[axis], axis);
 
     return axis < AXIS_LINEAR_COUNT ? value / p->modes.unit_mm : value;
 }
@@ -313,7 +313,7 @@ static const struct predefined *find(const char *name, size_t length)
     return NULL;
 }
 
-bool predefined_get(const struct program *p, const char *name, size_t length, double *value)
+bool takt_predefined_get(const struct program *p, const char *name, size_t length, double *value)
 {
     const struct predefined *found = name[0] == '_' ? find(name, length) : NULL;
 

@@ -7,6 +7,6 @@
 #include "program/program.h"
 
 /* False when there is none of that name, which need not end in zero. */
-bool predefined_get(const struct program *p, const char *name, size_t length, double *value);
+bool takt_predefined_get(const struct program *p, const char *name, size_t length, double *value);
 
 #endif

@@ -8,13 +8,13 @@
 static bool check(struct program *p, const struct program_code *code, const struct point *end)
 {
     if ((p->words.given & LETTERS_AXES) == 0) {
-        return report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
     }
     if (p->modes.inverse_time || p->modes.per_revolution) {
-        return report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
     }
     if ((code->argument & PROBE_OPTIONAL) == 0 && point_is_same(end, &p->modes.at)) {
-        return report_error_code(p, TAKT_ERROR_PROBE_NO_WAY, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_PROBE_NO_WAY, code->step, 0.0);
     }
     return true;
 }
@@ -23,36 +23,37 @@ static bool check(struct program *p, const struct program_code *code, const stru
 static bool store_result(struct program *p, enum step step, double contact)
 {
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        if (!words_store(p, step, PARAMETER_PROBE + i, coordinates_work(p, i))) {
+        if (!takt_words_store(p, step, PARAMETER_PROBE + i, takt_coordinates_work(p, i))) {
             return false;
         }
     }
-    return words_store(p, step, PARAMETER_PROBE_CONTACT, contact);
+    return takt_words_store(p, step, PARAMETER_PROBE_CONTACT, contact);
 }
 
-bool probe_move(struct program *p, const struct program_code *code)
+bool takt_probe_move(struct program *p, const struct program_code *code)
 {
     struct point end;
     struct move m;
 
-    coordinates_end(p, &end);
+    takt_coordinates_end(p, &end);
     if (!check(p, code, &end)) {
         return false;
     }
     p->modes.motion = code;
-    emit_prepare(p, MOVE_PROBE, &end, &m);
+    takt_emit_prepare(p, MOVE_PROBE, &end, &m);
     m.probe_away = (code->argument & PROBE_AWAY) != 0;
     m.probe_optional = (code->argument & PROBE_OPTIONAL) != 0;
-    return emit_motion(p, &m) && store_result(p, code->step, 0.0);
+    return takt_emit_motion(p, &m) && store_result(p, code->step, 0.0);
 }
 
-void probe_take(struct program *p, const struct program_answer *answer)
+void takt_probe_take(struct program *p, const struct program_answer *answer)
 {
     p->modes.at = answer->contact_at;
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        (void)parameters_set(p->config.parameters, PARAMETER_PROBE + i, coordinates_work(p, i));
+        (void)takt_parameters_set(p->config.parameters, PARAMETER_PROBE + i,
+                                  takt_coordinates_work(p, i));
     }
-    (void)parameters_set(p->config.parameters, PARAMETER_PROBE_CONTACT,
-                         answer->contact ? 1.0 : 0.0);
+    (void)takt_parameters_set(p->config.parameters, PARAMETER_PROBE_CONTACT,
+                              answer->contact ? 1.0 : 0.0);
     p->modes.at = answer->rest_at;
 }

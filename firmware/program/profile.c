@@ -29,7 +29,7 @@ static double cross(struct profile_point a, struct profile_point b)
     return a.u * b.v - a.v * b.u;
 }
 
-double profile_distance(const struct profile_point *a, const struct profile_point *b)
+double takt_profile_distance(const struct profile_point *a, const struct profile_point *b)
 {
     const struct profile_point d = minus(*a, *b);
 
@@ -38,7 +38,7 @@ double profile_distance(const struct profile_point *a, const struct profile_poin
 
 static double radius(const struct profile_segment *s)
 {
-    return profile_distance(&s->start, &s->centre);
+    return takt_profile_distance(&s->start, &s->centre);
 }
 
 /* -- offsets -- */
@@ -79,7 +79,7 @@ static bool offset(struct profile_segment *s, double d)
     }
     const struct profile_point way = minus(s->end, s->start);
     const struct profile_point right = {way.v, -way.u};
-    const double length = profile_distance(&s->start, &s->end);
+    const double length = takt_profile_distance(&s->start, &s->end);
 
     s->start = along(s->start, d / length, right);
     s->end = along(s->end, d / length, right);
@@ -90,7 +90,7 @@ static bool offset(struct profile_segment *s, double d)
 static struct profile_point nearer(struct profile_point near, struct profile_point a,
                                    struct profile_point b)
 {
-    return profile_distance(&near, &a) <= profile_distance(&near, &b) ? a : b;
+    return takt_profile_distance(&near, &a) <= takt_profile_distance(&near, &b) ? a : b;
 }
 
 /* The line through s, and the circle of c: from the foot of its centre on the line, h along it, h^2 = r^2 - distance^2. */
@@ -98,7 +98,7 @@ static struct profile_point meet_circle(const struct profile_segment *s,
                                         const struct profile_segment *c, struct profile_point near)
 {
     const struct profile_point way = minus(s->end, s->start);
-    const double length = profile_distance(&s->start, &s->end);
+    const double length = takt_profile_distance(&s->start, &s->end);
     const struct profile_point unit = {way.u / length, way.v / length};
     const struct profile_point to = minus(c->centre, s->start);
     const double aside = cross(unit, to);
@@ -116,7 +116,7 @@ static struct profile_point meet_circles(const struct profile_segment *first,
 {
     const double a = radius(first);
     const double b = radius(second);
-    const double c = profile_distance(&first->centre, &second->centre);
+    const double c = takt_profile_distance(&first->centre, &second->centre);
 
     if (c < PROFILE_SAME_MM) {
         return near;
@@ -151,7 +151,7 @@ static void join(struct profile_segment *a, struct profile_segment *b)
     const struct profile_point near = b->start;
     const bool arcs[2] = {a->kind == PROFILE_ARC, b->kind == PROFILE_ARC};
 
-    if (profile_distance(&a->end, &b->start) < PROFILE_SAME_MM) {
+    if (takt_profile_distance(&a->end, &b->start) < PROFILE_SAME_MM) {
         a->end = b->start;
         return;
     }
@@ -205,7 +205,7 @@ static bool is_corner(const struct profile_segment *s)
     return s->kind == PROFILE_FILLET || s->kind == PROFILE_CHAMFER;
 }
 
-bool profile_round(struct profile *p)
+bool takt_profile_round(struct profile *p)
 {
     unsigned kept = 0;
 
@@ -218,7 +218,8 @@ bool profile_round(struct profile *p)
     for (unsigned i = 0; i < p->count; i++) {
         const struct profile_segment *s = &p->segment[i];
 
-        if (!is_corner(s) && (i == 0 || profile_distance(&s->start, &s->end) > PROFILE_SAME_MM)) {
+        if (!is_corner(s) &&
+            (i == 0 || takt_profile_distance(&s->start, &s->end) > PROFILE_SAME_MM)) {
             p->segment[kept++] = *s;
         }
     }
@@ -363,7 +364,8 @@ static double find_end(const struct profile *p, double d, double u, const struct
 
 static void add(struct profile_path *path, const struct profile_segment *s)
 {
-    if (profile_distance(&s->start, &s->end) > PROFILE_SAME_MM && path->count < PROFILE_PATH_MAX) {
+    if (takt_profile_distance(&s->start, &s->end) > PROFILE_SAME_MM &&
+        path->count < PROFILE_PATH_MAX) {
         path->segment[path->count++] = *s;
     }
 }
@@ -391,8 +393,8 @@ static bool is_gap(const struct profile *p, double d, const struct over *o)
     struct profile_segment behind = p->segment[i + 1];
 
     return offset(&before, d) && offset(&behind, d) &&
-           profile_distance(&before.end, &o->s.start) < PROFILE_SHORT_MM &&
-           profile_distance(&behind.start, &o->s.end) < PROFILE_SHORT_MM;
+           takt_profile_distance(&before.end, &o->s.start) < PROFILE_SHORT_MM &&
+           takt_profile_distance(&behind.start, &o->s.end) < PROFILE_SHORT_MM;
 }
 
 /* The last piece has been added: it begins where the one before it ends. */
@@ -425,7 +427,7 @@ static void walk(const struct profile *p, double d, struct profile_point a,
         o.s.start = (struct profile_point){a.u, v};
         o.s.end = (struct profile_point){end, height(&o.s, end)};
         a = o.s.end;
-        if (profile_distance(&o.s.start, &o.s.end) <= PROFILE_SAME_MM) {
+        if (takt_profile_distance(&o.s.start, &o.s.end) <= PROFILE_SAME_MM) {
             continue;
         }
         if (o.number == last && !gap && path->count > 1) {
@@ -494,16 +496,16 @@ static bool offset_down(const struct profile *p, double d, struct profile_path *
 {
     struct profile image = *p;
 
-    profile_mirror(&image, false, true);
+    takt_profile_mirror(&image, false, true);
     const bool good = offset_up(&image, d, path);
 
     for (unsigned i = 1; i < path->count; i++) {
-        profile_mirror_segment(&path->segment[i], false, true);
+        takt_profile_mirror_segment(&path->segment[i], false, true);
     }
     return good;
 }
 
-bool profile_offset(const struct profile *p, double distance_mm, struct profile_path *path)
+bool takt_profile_offset(const struct profile *p, double distance_mm, struct profile_path *path)
 {
     const double d = signed_distance(p, distance_mm);
     bool good = true;
@@ -520,7 +522,7 @@ bool profile_offset(const struct profile *p, double distance_mm, struct profile_
     return good;
 }
 
-bool profile_cross(const struct profile_segment *s, double v, double *u)
+bool takt_profile_cross(const struct profile_segment *s, double v, double *u)
 {
     const double low = maths_min(s->start.v, s->end.v);
     const double high = maths_max(s->start.v, s->end.v);

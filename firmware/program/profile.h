@@ -45,26 +45,26 @@ struct profile_path {
 /* What is shorter than this says nothing, and a way back of this length is none. */
 #define PROFILE_SHORT_MM 1e-3
 
-double profile_distance(const struct profile_point *a, const struct profile_point *b);
+double takt_profile_distance(const struct profile_point *a, const struct profile_point *b);
 
 /* Quarter turns and mirrors, and back. A mirror turns arcs the other way. */
-void profile_turn(struct profile *p);
-void profile_mirror(struct profile *p, bool u, bool v);
-void profile_mirror_segment(struct profile_segment *s, bool u, bool v);
+void takt_profile_turn(struct profile *p);
+void takt_profile_mirror(struct profile *p, bool u, bool v);
+void takt_profile_mirror_segment(struct profile_segment *s, bool u, bool v);
 
 /* Makes the fillets and chamfers. False: one does not fit. */
-bool profile_round(struct profile *p);
+bool takt_profile_round(struct profile *p);
 
 /* Does every segment from first on go towards falling u, arcs without turning back? */
-bool profile_falls(const struct profile *p, unsigned first);
+bool takt_profile_falls(const struct profile *p, unsigned first);
 
 /*
  * The profile without its first segment, distance_mm to the right, to *path; outer corners become arcs, what the distance
  * swallows is left out. Its first segment becomes the way to it. False: nothing remains, or too much.
  */
-bool profile_offset(const struct profile *p, double distance_mm, struct profile_path *path);
+bool takt_profile_offset(const struct profile *p, double distance_mm, struct profile_path *path);
 
 /* Where a segment, which must not turn back in v, is at the height v; the end of u that comes first. False: nowhere. */
-bool profile_cross(const struct profile_segment *s, double v, double *u);
+bool takt_profile_cross(const struct profile_segment *s, double v, double *u);
 
 #endif

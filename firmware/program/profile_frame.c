@@ -7,7 +7,7 @@ static void turn_point(struct profile_point *q)
     *q = (struct profile_point){q->v, -q->u};
 }
 
-void profile_turn(struct profile *p)
+void takt_profile_turn(struct profile *p)
 {
     for (unsigned i = 0; i < p->count; i++) {
         turn_point(&p->segment[i].start);
@@ -24,7 +24,7 @@ static void mirror_point(struct profile_point *q, bool u, bool v)
     q->v = v ? -q->v : q->v;
 }
 
-void profile_mirror_segment(struct profile_segment *s, bool u, bool v)
+void takt_profile_mirror_segment(struct profile_segment *s, bool u, bool v)
 {
     mirror_point(&s->start, u, v);
     mirror_point(&s->end, u, v);
@@ -34,10 +34,10 @@ void profile_mirror_segment(struct profile_segment *s, bool u, bool v)
     }
 }
 
-void profile_mirror(struct profile *p, bool u, bool v)
+void takt_profile_mirror(struct profile *p, bool u, bool v)
 {
     for (unsigned i = 0; i < p->count; i++) {
-        profile_mirror_segment(&p->segment[i], u, v);
+        takt_profile_mirror_segment(&p->segment[i], u, v);
     }
 }
 
@@ -55,7 +55,7 @@ static bool falls(const struct profile_segment *s)
            side * (s->end.v - s->centre.v) >= -PROFILE_SHORT_MM;
 }
 
-bool profile_falls(const struct profile *p, unsigned first)
+bool takt_profile_falls(const struct profile *p, unsigned first)
 {
     for (unsigned i = first; i < p->count; i++) {
         const uint8_t kind = p->segment[i].kind;

@@ -21,11 +21,11 @@ static_assert(sizeof(struct program) + sizeof(struct parameters) <= PROGRAM_MEMO
               "the interpreter outgrew the memory set aside for it");
 static_assert(STEP_COUNT <= 32, "steps are bits of a word");
 
-void program_open(struct program *p, const struct program_config *config,
-                  const struct source *source)
+void takt_program_open(struct program *p, const struct program_config *config,
+                       const struct source *source)
 {
     p->config = *config;
-    lexer_open(&p->lexer, source);
+    takt_lexer_open(&p->lexer, source);
     p->names.count = 0;
     p->names.text_length = 0;
     p->names.call = 0;
@@ -35,14 +35,14 @@ void program_open(struct program *p, const struct program_config *config,
     p->phase = PROGRAM_AT_START;
     p->question = QUESTION_NONE;
     p->tools.count = 0;
-    cycles_open(p);
-    modes_open(p);
-    coordinates_open(p);
-    flow_open(p);
-    approach_open(p);
+    takt_cycles_open(p);
+    takt_modes_open(p);
+    takt_coordinates_open(p);
+    takt_flow_open(p);
+    takt_approach_open(p);
 }
 
-const struct program_modes *program_get_modes(const struct program *p)
+const struct program_modes *takt_program_get_modes(const struct program *p)
 {
     return &p->modes;
 }
@@ -50,9 +50,9 @@ const struct program_modes *program_get_modes(const struct program *p)
 static bool run_step(struct program *p, const struct program_code *code,
                      const struct program_modes *before)
 {
-    cycles_see(p, code);
-    return spline_allows(p, code) && cutter_allows(p, code) && code->run(p, code) &&
-           cutter_allows_change(p, code, before);
+    takt_cycles_see(p, code);
+    return takt_spline_allows(p, code) && takt_cutter_allows(p, code) && code->run(p, code) &&
+           takt_cutter_allows_change(p, code, before);
 }
 
 static bool run_steps(struct program *p, const struct program_modes *before)
@@ -72,12 +72,12 @@ static bool run_line(struct program *p)
 {
     const struct program_modes before = p->modes;
 
-    if (words_assign(p) && run_steps(p, &before)) {
+    if (takt_words_assign(p) && run_steps(p, &before)) {
         return true;
     }
-    words_take_back(p);
-    tool_values_take_back(p);
-    cycles_open(p);
+    takt_words_take_back(p);
+    takt_tool_values_take_back(p);
+    takt_cycles_open(p);
     p->modes = before;
     p->queue_count = 0;
     return false;
@@ -87,10 +87,10 @@ static bool run_line(struct program *p)
 static bool end_text(struct program *p)
 {
     const bool searching = p->flow.skip == SKIP_TO_SUB;
-    const bool good = spline_ends(p) && flow_end_of_text(p);
+    const bool good = takt_spline_ends(p) && takt_flow_end_of_text(p);
 
     if (good) {
-        emit_event(p, MOVE_END);
+        takt_emit_event(p, MOVE_END);
     }
     if (!searching) {
         p->phase = PROGRAM_ENDED;
@@ -109,7 +109,7 @@ static bool take_line(struct program *p)
     struct program_lexer *l = &p->lexer;
 
     if (l->length == 0) {
-        return flow_is_skipping(p) || comment_run(p);
+        return flow_is_skipping(p) || takt_comment_run(p);
     }
     const bool first = p->phase == PROGRAM_AT_START;
 
@@ -117,20 +117,20 @@ static bool take_line(struct program *p)
     if (is_percent(l)) {
         return first || end_text(p);
     }
-    if (lexer_accept(l, '/') && p->config.block_delete) {
+    if (takt_lexer_accept(l, '/') && p->config.block_delete) {
         return true;
     }
-    if (oword_begins(p)) {
-        return flow_take(p);
+    if (takt_oword_begins(p)) {
+        return takt_flow_take(p);
     }
     if (flow_is_skipping(p)) {
         return true;
     }
-    tool_values_begin_line(p);
-    if (!words_read(p) || !comment_run(p)) {
+    takt_tool_values_begin_line(p);
+    if (!takt_words_read(p) || !takt_comment_run(p)) {
         return false;
     }
-    return contour_is_open(p) ? contour_take_line(p) : run_line(p);
+    return contour_is_open(p) ? takt_contour_take_line(p) : run_line(p);
 }
 
 /* The line to start at waits until the way to it has been fetched. */
@@ -138,7 +138,7 @@ static bool take_or_approach(struct program *p)
 {
     bool good;
 
-    if (!approach_begins(p, &good)) {
+    if (!takt_approach_begins(p, &good)) {
         return take_line(p);
     }
     return good;
@@ -148,11 +148,11 @@ static bool take_or_approach(struct program *p)
 static bool read_line(struct program *p)
 {
     if (p->approach.holds_line) {
-        return approach_goes_on(p) || take_line(p);
+        return takt_approach_goes_on(p) || take_line(p);
     }
-    const enum lexer_result result = lexer_next_line(&p->lexer, &p->error);
+    const enum lexer_result result = takt_lexer_next_line(&p->lexer, &p->error);
 
-    if (result != LEXER_END && !flow_count_line(p)) {
+    if (result != LEXER_END && !takt_flow_count_line(p)) {
         p->phase = PROGRAM_ENDED;
         return false;
     }
@@ -232,13 +232,13 @@ static bool has_progress(const struct program *p, const struct point *from)
 static bool advance(struct program *p)
 {
     const struct point from = p->modes.at;
-    const bool good = contour_follow(p, read_line(p));
+    const bool good = takt_contour_follow(p, read_line(p));
 
     if (!good) {
-        flow_fail(p);
+        takt_flow_fail(p);
     }
     if (p->approach.pending) {
-        return approach_drop(p) && good;
+        return takt_approach_drop(p) && good;
     }
     if (has_progress(p, &from)) {
         p->flow.lines_again = 0;
@@ -257,18 +257,18 @@ static enum program_question question_of(const struct move *move)
     return move->kind == MOVE_INPUT ? QUESTION_INPUT : QUESTION_NONE;
 }
 
-enum program_result program_next(struct program *p, struct move *move,
-                                 struct diagnostic *diagnostic)
+enum program_result takt_program_next(struct program *p, struct move *move,
+                                      struct diagnostic *diagnostic)
 {
     if (p->question != QUESTION_NONE && p->config.waits) {
         return PROGRAM_WAIT;
     }
     p->question = QUESTION_NONE;
-    while (!emit_take(p, move)) {
+    while (!takt_emit_take(p, move)) {
         if (p->phase == PROGRAM_ENDED) {
             return PROGRAM_END;
         }
-        if (!lexer_can_go_on(&p->lexer)) {
+        if (!takt_lexer_can_go_on(&p->lexer)) {
             return PROGRAM_LATER;
         }
         if (!advance(p)) {
@@ -280,14 +280,14 @@ enum program_result program_next(struct program *p, struct move *move,
     return PROGRAM_MOVE;
 }
 
-void program_answer(struct program *p, const struct program_answer *answer)
+void takt_program_answer(struct program *p, const struct program_answer *answer)
 {
     switch (p->question) {
     case QUESTION_PROBE:
-        probe_take(p, answer);
+        takt_probe_take(p, answer);
         break;
     case QUESTION_INPUT:
-        (void)parameters_set(p->config.parameters, PARAMETER_INPUT, answer->value);
+        (void)takt_parameters_set(p->config.parameters, PARAMETER_INPUT, answer->value);
         break;
     case QUESTION_SETUP:
     case QUESTION_NONE:
@@ -296,7 +296,7 @@ void program_answer(struct program *p, const struct program_answer *answer)
     p->question = QUESTION_NONE;
 }
 
-void program_settle(struct program *p, const struct point *at)
+void takt_program_settle(struct program *p, const struct point *at)
 {
     for (unsigned i = 0; i < p->queue_count; i++) {
         if (move_is_motion(&p->queue[(p->queue_first + i) % PROGRAM_QUEUE_MAX])) {
@@ -306,7 +306,7 @@ void program_settle(struct program *p, const struct point *at)
     p->modes.at = *at;
 }
 
-bool program_warning(struct program *p, struct diagnostic *diagnostic)
+bool takt_program_warning(struct program *p, struct diagnostic *diagnostic)
 {
     if (p->warnings == 0) {
         return false;

@@ -22,7 +22,7 @@
 struct program;
 struct program_modes;
 
-/* What the interpreter must know of the machine and the session. Copied by program_open. */
+/* What the interpreter must know of the machine and the session. Copied by takt_program_open. */
 struct program_config {
     unsigned axes;                 /* bit i set: the machine has axis i (enum axis) */
     double travel_min[AXIS_COUNT]; /* machine coordinates, mm or rad */
@@ -36,8 +36,8 @@ struct program_config {
     uint32_t correction_layers; /* of position-error correction, for M120 and M121: 0 ... 8 */
     bool exact_path;            /* treat every G64 as G61 */
     bool block_delete;          /* skip lines that begin with '/' */
-    bool waits;                 /* PROGRAM_WAIT until program_answer; else no contact, input 0 */
-    bool sharp_corners;         /* for the room offset: outer corners are not rounded */
+    bool waits;         /* PROGRAM_WAIT until takt_program_answer; else no contact, input 0 */
+    bool sharp_corners; /* for the room offset: outer corners are not rounded */
     /*
      * NULL, or hears of every line that is executed but O-words, before anything else of it: its comment, if it has one, is that
      * of p->lexer. It changes nothing of p.
@@ -53,7 +53,7 @@ enum program_result {
     PROGRAM_MOVE,
     PROGRAM_END,
     PROGRAM_ERROR,
-    PROGRAM_WAIT, /* nothing more is read until program_answer */
+    PROGRAM_WAIT, /* nothing more is read until takt_program_answer */
     PROGRAM_LATER /* the text is still coming, and its next line has not come: ask again */
 };
 
@@ -71,8 +71,8 @@ struct program_answer {
 #include "program/program_state.h"
 
 /* Makes p ready to read source from its beginning. */
-void program_open(struct program *p, const struct program_config *config,
-                  const struct source *source);
+void takt_program_open(struct program *p, const struct program_config *config,
+                       const struct source *source);
 
 /*
  * The next canonical move into *move: PROGRAM_MOVE. After M2, M30 or the end of the text one MOVE_END comes, then
@@ -80,31 +80,31 @@ void program_open(struct program *p, const struct program_config *config,
  * (for `takt check`; modes are then as before the faulty line).
  *
  * What follows a MOVE_PROBE or a MOVE_INPUT may depend on what becomes of it. With config.waits PROGRAM_WAIT comes
- * then, again and again, until program_answer; without, the program goes on as if the probing move had ended where it
+ * then, again and again, until takt_program_answer; without, the program goes on as if the probing move had ended where it
  * is programmed to, without contact, and the input were 0.
  */
-enum program_result program_next(struct program *p, struct move *move,
-                                 struct diagnostic *diagnostic);
+enum program_result takt_program_next(struct program *p, struct move *move,
+                                      struct diagnostic *diagnostic);
 
 /* After the caller has run a MOVE_PROBE or a MOVE_INPUT, before the next move is asked for. Else it does nothing. */
-void program_answer(struct program *p, const struct program_answer *answer);
+void takt_program_answer(struct program *p, const struct program_answer *answer);
 
 /*
  * The tool is at *at, not where the program has left it: after a contour without a move that leaves it. What the line being
  * read still moves comes first. Before more is asked for.
  */
-void program_settle(struct program *p, const struct point *at);
+void takt_program_settle(struct program *p, const struct point *at);
 
 /*
  * What the lines read so far leave for the next, also for another text that goes on with it, but for cutter
  * compensation. Valid as long as p.
  */
-const struct program_modes *program_get_modes(const struct program *p);
+const struct program_modes *takt_program_get_modes(const struct program *p);
 
 /*
  * Warnings since the last call (words read and ignored, H of an unknown tool): true and *diagnostic while there
  * are any. At most PROGRAM_WARNINGS_MAX are kept between calls; further ones are dropped.
  */
-bool program_warning(struct program *p, struct diagnostic *diagnostic);
+bool takt_program_warning(struct program *p, struct diagnostic *diagnostic);
 
 #endif

@@ -19,43 +19,46 @@ static void describe(const struct program *p, struct diagnostic *d, enum takt_er
     for (unsigned i = span.begin; i < span.end && length < sizeof(word); i++) {
         word[length++] = capital(p->lexer.text[i]);
     }
-    diagnostic_set(d, code, p->lexer.line, lexer_column(&p->lexer, span.begin), word, length,
-                   value);
+    takt_diagnostic_set(d, code, p->lexer.line, takt_lexer_column(&p->lexer, span.begin), word,
+                        length, value);
 }
 
-bool report_error(struct program *p, enum takt_error code, struct program_span span, double value)
+bool takt_report_error(struct program *p, enum takt_error code, struct program_span span,
+                       double value)
 {
     describe(p, &p->error, code, span, value);
     return false;
 }
 
-bool report_error_at(struct program *p, enum takt_error code, unsigned at, double value)
+bool takt_report_error_at(struct program *p, enum takt_error code, unsigned at, double value)
 {
     const unsigned end = at < p->lexer.length ? at + 1 : at;
 
-    return report_error(p, code, (struct program_span){(uint16_t)at, (uint16_t)end}, value);
+    return takt_report_error(p, code, (struct program_span){(uint16_t)at, (uint16_t)end}, value);
 }
 
-bool report_error_code(struct program *p, enum takt_error code, enum step step, double value)
+bool takt_report_error_code(struct program *p, enum takt_error code, enum step step, double value)
 {
-    return report_error(p, code, p->words.code_span[step], value);
+    return takt_report_error(p, code, p->words.code_span[step], value);
 }
 
-bool report_error_letter(struct program *p, enum takt_error code, char letter, double value)
+bool takt_report_error_letter(struct program *p, enum takt_error code, char letter, double value)
 {
-    return report_error(p, code, p->words.span[LETTER_INDEX(letter)], value);
+    return takt_report_error(p, code, p->words.span[LETTER_INDEX(letter)], value);
 }
 
-bool report_missing(struct program *p, enum step step, char letter)
+bool takt_report_missing(struct program *p, enum step step, char letter)
 {
     const char name = capital(letter);
 
-    diagnostic_set(&p->error, TAKT_ERROR_WORD_MISSING, p->lexer.line,
-                   lexer_column(&p->lexer, p->words.code_span[step].begin), &name, 1, 0.0);
+    takt_diagnostic_set(&p->error, TAKT_ERROR_WORD_MISSING, p->lexer.line,
+                        takt_lexer_column(&p->lexer, p->words.code_span[step].begin), &name, 1,
+                        0.0);
     return false;
 }
 
-void report_warning(struct program *p, enum takt_error code, struct program_span span, double value)
+void takt_report_warning(struct program *p, enum takt_error code, struct program_span span,
+                         double value)
 {
     if (p->warnings < PROGRAM_WARNINGS_MAX) {
         describe(p, &p->warning[p->warnings++], code, span, value);

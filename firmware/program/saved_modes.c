@@ -81,7 +81,7 @@ static void restore_spindle(struct program *p, const struct program_saved *s, bo
 
     if (turns && (speed_changes || m->direction != s->direction)) {
         m->direction = s->direction;
-        events_tell_spindle(p);
+        takt_events_tell_spindle(p);
     }
 }
 
@@ -97,13 +97,13 @@ static bool bring_back(struct program *p, const struct program_saved *saved)
     }
     restore_values(m, saved);
     if (m->system != saved->system) {
-        coordinates_load_system(p, saved->system);
+        takt_coordinates_load_system(p, saved->system);
     }
     restore_spindle(p, saved, speed_changes);
     if (m->mist != saved->mist || m->flood != saved->flood) {
         m->mist = saved->mist;
         m->flood = saved->flood;
-        events_tell_coolant(p);
+        takt_events_tell_coolant(p);
     }
     return true;
 }
@@ -114,12 +114,12 @@ static unsigned place_of(const struct program_frame *frame)
     return (unsigned)frame->kept + frame->locals;
 }
 
-unsigned saved_modes_end(const struct program_frame *frame)
+unsigned takt_saved_modes_end(const struct program_frame *frame)
 {
     return place_of(frame) + (frame->is_saved ? PROGRAM_SAVED_NUMBERS : 0);
 }
 
-bool saved_modes_restore(struct program *p, const struct program_frame *frame)
+bool takt_saved_modes_restore(struct program *p, const struct program_frame *frame)
 {
     struct program_saved saved;
 
@@ -132,15 +132,15 @@ static bool restore(struct program *p, const struct program_code *code)
     const struct program_frame *frame = &p->flow.frame[p->flow.calls];
 
     if (!frame->is_saved) {
-        return report_error_code(p, TAKT_ERROR_MODES_NOT_SAVED, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_MODES_NOT_SAVED, code->step, 0.0);
     }
-    if (!saved_modes_restore(p, frame)) {
-        return report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
+    if (!takt_saved_modes_restore(p, frame)) {
+        return takt_report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
     }
-    return words_store(p, code->step, PARAMETER_SYSTEM, p->modes.system);
+    return takt_words_store(p, code->step, PARAMETER_SYSTEM, p->modes.system);
 }
 
-bool saved_modes_run_code(struct program *p, const struct program_code *code)
+bool takt_saved_modes_run_code(struct program *p, const struct program_code *code)
 {
     struct program_frame *frame = &p->flow.frame[p->flow.calls];
     struct program_saved saved;
@@ -150,10 +150,10 @@ bool saved_modes_run_code(struct program *p, const struct program_code *code)
     }
     frame->is_saved = code->argument != 1;
     frame->restores = code->argument == 3 && p->flow.calls > 0;
-    if (saved_modes_end(frame) > PROGRAM_KEPT_MAX) {
+    if (takt_saved_modes_end(frame) > PROGRAM_KEPT_MAX) {
         frame->is_saved = false;
         frame->restores = false;
-        return report_error_code(p, TAKT_ERROR_PROGRAM_FULL, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_PROGRAM_FULL, code->step, 0.0);
     }
     if (frame->is_saved) {
         save(&p->modes, &saved);

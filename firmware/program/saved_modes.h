@@ -7,15 +7,15 @@
 #include "program/program.h"
 
 /* M70 saves, M71 forgets, M72 brings back, M73 saves and brings back when the call ends; argument: 0 ... 3. */
-bool saved_modes_run_code(struct program *p, const struct program_code *code);
+bool takt_saved_modes_run_code(struct program *p, const struct program_code *code);
 
 /*
  * Brings the modes that a call has saved back, with a move for the spindle and one for the coolant if they change. False:
  * nothing is changed, because a compensated contour is under way that could not go on.
  */
-bool saved_modes_restore(struct program *p, const struct program_frame *frame);
+bool takt_saved_modes_restore(struct program *p, const struct program_frame *frame);
 
 /* Where in struct program_flow, kept, everything of a call and its callers ends. */
-unsigned saved_modes_end(const struct program_frame *frame);
+unsigned takt_saved_modes_end(const struct program_frame *frame);
 
 #endif

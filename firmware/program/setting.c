@@ -33,7 +33,7 @@ static bool refuse_words(struct program *p, uint32_t letters)
         const char letter = (char)('a' + i);
 
         if ((letters & LETTER_BIT(letter)) != 0 && words_has(p, letter)) {
-            return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
+            return takt_report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
         }
     }
     return true;
@@ -48,9 +48,9 @@ static void work_in_system(const struct program *p, unsigned system,
                            const struct program_turn *turn, struct point *work)
 {
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        work->at[i] = p->modes.at.at[i] - coordinates_system_offset(p, system, i);
+        work->at[i] = p->modes.at.at[i] - takt_coordinates_system_offset(p, system, i);
     }
-    coordinates_turn_back(turn, &work->at[AXIS_X], &work->at[AXIS_Y]);
+    takt_coordinates_turn_back(turn, &work->at[AXIS_X], &work->at[AXIS_Y]);
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
         work->at[i] -= p->modes.axis_offset.at[i];
     }
@@ -61,7 +61,7 @@ static bool store_offset(struct program *p, enum step step, unsigned system, enu
 {
     const unsigned first = PARAMETER_SYSTEM_OFFSET + (system - 1) * PARAMETER_SYSTEM_STRIDE;
 
-    return words_store(p, step, first + axis, coordinates_to_parameter(offset, axis));
+    return takt_words_store(p, step, first + axis, takt_coordinates_to_parameter(offset, axis));
 }
 
 static bool set_system(struct program *p, enum step step, unsigned system)
@@ -70,11 +70,11 @@ static bool set_system(struct program *p, enum step step, unsigned system)
     double value;
 
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        if (coordinates_word(p, i, &value) && !store_offset(p, step, system, i, value)) {
+        if (takt_coordinates_word(p, i, &value) && !store_offset(p, step, system, i, value)) {
             return false;
         }
     }
-    return !words_has(p, 'r') || words_store(p, step, rotate, words_value(p, 'r'));
+    return !words_has(p, 'r') || takt_words_store(p, step, rotate, words_value(p, 'r'));
 }
 
 /*
@@ -94,19 +94,19 @@ static bool set_system_by_position(struct program *p, enum step step, unsigned s
     if (!refuse_words(p, LETTER_BIT('r'))) {
         return false;
     }
-    coordinates_set_turn(&turn, coordinates_system_degrees(p, system));
+    takt_coordinates_set_turn(&turn, takt_coordinates_system_degrees(p, system));
     work_in_system(p, system, &turn, &machine);
     struct point tool = p->modes.tool_offset;
 
-    coordinates_turn_back(&turn, &tool.at[AXIS_X], &tool.at[AXIS_Y]);
+    takt_coordinates_turn_back(&turn, &tool.at[AXIS_X], &tool.at[AXIS_Y]);
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        if (coordinates_word(p, i, &value)) {
+        if (takt_coordinates_word(p, i, &value)) {
             change.at[i] = machine.at[i] - tool.at[i] - value;
         }
     }
-    coordinates_turn(&turn, &change.at[AXIS_X], &change.at[AXIS_Y]);
+    takt_coordinates_turn(&turn, &change.at[AXIS_X], &change.at[AXIS_Y]);
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        const double old = coordinates_system_offset(p, system, i);
+        const double old = takt_coordinates_system_offset(p, system, i);
 
         if (change.at[i] != 0.0 && !store_offset(p, step, system, i, old + change.at[i])) {
             return false;
@@ -121,7 +121,7 @@ static bool run_system(struct program *p, const struct program_code *code, bool 
     uint32_t system;
 
     if (!refuse_words(p, LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('k') | LETTER_BIT('q')) ||
-        !words_whole(p, 'p', 0.0, COORDINATES_SYSTEMS, &system)) {
+        !takt_words_whole(p, 'p', 0.0, COORDINATES_SYSTEMS, &system)) {
         return false;
     }
     if (system == 0) {
@@ -132,7 +132,7 @@ static bool run_system(struct program *p, const struct program_code *code, bool 
         return false;
     }
     if (system == p->modes.system) {
-        coordinates_load_system(p, system);
+        takt_coordinates_load_system(p, system);
     }
     return true;
 }
@@ -142,7 +142,7 @@ static void set_offsets(const struct program *p, struct tool *tool)
     double value;
 
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        if (coordinates_word(p, i, &value)) {
+        if (takt_coordinates_word(p, i, &value)) {
             tool->offset.at[i] = value;
         }
     }
@@ -156,16 +156,16 @@ static void set_offsets_by_position(const struct program *p, unsigned system, bo
     struct point work;
     double value;
 
-    coordinates_set_turn(&turn, coordinates_system_degrees(p, system));
+    takt_coordinates_set_turn(&turn, takt_coordinates_system_degrees(p, system));
     work_in_system(p, system, &turn, &work);
-    coordinates_turn_back(&turn, &tool->offset.at[AXIS_X], &tool->offset.at[AXIS_Y]);
+    takt_coordinates_turn_back(&turn, &tool->offset.at[AXIS_X], &tool->offset.at[AXIS_Y]);
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        if (coordinates_word(p, i, &value)) {
+        if (takt_coordinates_word(p, i, &value)) {
             tool->offset.at[i] =
                 work.at[i] + (axis_offset ? 0.0 : p->modes.axis_offset.at[i]) - value;
         }
     }
-    coordinates_turn(&turn, &tool->offset.at[AXIS_X], &tool->offset.at[AXIS_Y]);
+    takt_coordinates_turn(&turn, &tool->offset.at[AXIS_X], &tool->offset.at[AXIS_Y]);
 }
 
 static void set_shape(const struct program *p, struct tool *tool, uint32_t orientation)
@@ -191,14 +191,16 @@ static bool run_tool(struct program *p, const struct program_code *code, enum wh
     uint32_t number;
     uint32_t orientation = 0;
 
-    if (!refuse_words(p, LETTER_BIT('k')) || !words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
-        (words_has(p, 'q') && !words_whole(p, 'q', 0.0, CUTTER_ORIENTATION_MAX, &orientation))) {
+    if (!refuse_words(p, LETTER_BIT('k')) ||
+        !takt_words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
+        (words_has(p, 'q') &&
+         !takt_words_whole(p, 'q', 0.0, CUTTER_ORIENTATION_MAX, &orientation))) {
         return false;
     }
     if ((p->words.given & setting) == 0) {
-        return report_error_code(p, TAKT_ERROR_SETTING_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_SETTING_MISSING, code->step, 0.0);
     }
-    struct tool *tool = tool_values_change(p, code->step, number);
+    struct tool *tool = takt_tool_values_change(p, code->step, number);
 
     if (tool == NULL) {
         return false;
@@ -220,15 +222,15 @@ static bool run_wear(struct program *p, const struct program_code *code)
     uint32_t number, length_mm = 0, time_s = 0;
 
     if (!refuse_words(p, LETTERS_AXES | LETTER_BIT('k') | LETTER_BIT('q') | LETTER_BIT('r')) ||
-        !words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
-        (words_has(p, 'i') && !words_whole(p, 'i', 0.0, WEAR_MAX, &length_mm)) ||
-        (words_has(p, 'j') && !words_whole(p, 'j', 0.0, WEAR_MAX, &time_s))) {
+        !takt_words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
+        (words_has(p, 'i') && !takt_words_whole(p, 'i', 0.0, WEAR_MAX, &length_mm)) ||
+        (words_has(p, 'j') && !takt_words_whole(p, 'j', 0.0, WEAR_MAX, &time_s))) {
         return false;
     }
-    if (tool_values_find(p, number) == NULL) {
-        return report_error_code(p, TAKT_ERROR_TOOL_ABSENT, code->step, number);
+    if (takt_tool_values_find(p, number) == NULL) {
+        return takt_report_error_code(p, TAKT_ERROR_TOOL_ABSENT, code->step, number);
     }
-    struct move *m = emit_event(p, MOVE_WEAR);
+    struct move *m = takt_emit_event(p, MOVE_WEAR);
 
     m->tool = number;
     m->wear_length_mm = length_mm;
@@ -238,7 +240,7 @@ static bool run_wear(struct program *p, const struct program_code *code)
 
 static struct move *emit_setup(struct program *p, unsigned which, double value)
 {
-    struct move *m = emit_event(p, MOVE_SETUP);
+    struct move *m = takt_emit_event(p, MOVE_SETUP);
 
     m->channel = which;
     m->setup = value;
@@ -257,7 +259,7 @@ static bool run_setup(struct program *p)
         return false;
     }
     for (unsigned i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
-        if (coordinates_word(p, (enum axis)i, &value)) {
+        if (takt_coordinates_word(p, (enum axis)i, &value)) {
             last = emit_setup(p, i, value);
         }
     }
@@ -272,18 +274,18 @@ static bool run_setup(struct program *p)
     return true;
 }
 
-bool setting_run(struct program *p, const struct program_code *code)
+bool takt_setting_run(struct program *p, const struct program_code *code)
 {
     uint32_t what;
 
     if (!words_has(p, 'l')) {
-        return report_missing(p, code->step, 'l');
+        return takt_report_missing(p, code->step, 'l');
     }
-    if (!words_whole(p, 'l', TOOLS_AGAIN, SYSTEM_BY_POSITION, &what)) {
+    if (!takt_words_whole(p, 'l', TOOLS_AGAIN, SYSTEM_BY_POSITION, &what)) {
         return false;
     }
     if (what != TOOLS_AGAIN && what != SETUP && !words_has(p, 'p')) {
-        return report_missing(p, code->step, 'p');
+        return takt_report_missing(p, code->step, 'p');
     }
     switch (what) {
     case TOOLS_AGAIN:
@@ -300,6 +302,6 @@ bool setting_run(struct program *p, const struct program_code *code)
     case SETUP:
         return run_setup(p);
     default:
-        return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'l', what);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'l', what);
     }
 }

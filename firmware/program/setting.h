@@ -14,6 +14,6 @@
 
 #include "program/program.h"
 
-bool setting_run(struct program *p, const struct program_code *code);
+bool takt_setting_run(struct program *p, const struct program_code *code);
 
 #endif

@@ -29,8 +29,8 @@ static bool text_seek(void *context, uint64_t offset)
     return true;
 }
 
-void source_open_text(struct source *source, struct source_text *context, const char *text,
-                      size_t length)
+void takt_source_open_text(struct source *source, struct source_text *context, const char *text,
+                           size_t length)
 {
     context->text = text;
     context->length = length;

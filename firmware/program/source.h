@@ -30,7 +30,7 @@ struct source_text {
     size_t position;
 };
 
-void source_open_text(struct source *source, struct source_text *context, const char *text,
-                      size_t length);
+void takt_source_open_text(struct source *source, struct source_text *context, const char *text,
+                           size_t length);
 
 #endif

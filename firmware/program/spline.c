@@ -16,19 +16,19 @@
 /* The first control point of G6.2 is where the tool is: off by no more than rounded coordinates are. */
 #define START_MM 0.01
 
-bool spline_allows(struct program *p, const struct program_code *code)
+bool takt_spline_allows(struct program *p, const struct program_code *code)
 {
-    return !p->cycle.spline_open || code->run == spline_start || code->step == STEP_FEED ||
-           report_error_code(p, TAKT_ERROR_SPLINE_OPEN, code->step, 0.0);
+    return !p->cycle.spline_open || code->run == takt_spline_start || code->step == STEP_FEED ||
+           takt_report_error_code(p, TAKT_ERROR_SPLINE_OPEN, code->step, 0.0);
 }
 
-bool spline_ends(struct program *p)
+bool takt_spline_ends(struct program *p)
 {
     static const char end[] = "the end";
 
     if (p->cycle.spline_open) {
-        diagnostic_set(&p->error, TAKT_ERROR_SPLINE_OPEN, p->lexer.line, 0, end, sizeof(end) - 1,
-                       0.0);
+        takt_diagnostic_set(&p->error, TAKT_ERROR_SPLINE_OPEN, p->lexer.line, 0, end,
+                            sizeof(end) - 1, 0.0);
     }
     return !p->cycle.spline_open;
 }
@@ -40,7 +40,7 @@ static void vector(const struct program *p, char first, char second, double v[2]
 {
     v[0] = words_has(p, first) ? words_value(p, first) * p->modes.unit_mm : 0.0;
     v[1] = words_has(p, second) ? words_value(p, second) * p->modes.unit_mm : 0.0;
-    coordinates_turn(&p->modes.turn, &v[0], &v[1]);
+    takt_coordinates_turn(&p->modes.turn, &v[0], &v[1]);
 }
 
 /* Machine coordinates of the axis words. With G91 they count from the start of the curve. */
@@ -53,7 +53,7 @@ static void point_of_words(struct program *p, double at_mm[2])
     for (unsigned i = 0; i < 2; i++) {
         p->modes.at.at[axis[i]] = p->cycle.spline.from_mm[i];
     }
-    coordinates_end(p, &end);
+    takt_coordinates_end(p, &end);
     p->modes.at = at;
     for (unsigned i = 0; i < 2; i++) {
         at_mm[i] = end.at[axis[i]];
@@ -65,8 +65,9 @@ static void add_even(struct program_spline *s, const double at_mm[2], double wei
 {
     const uint32_t order = s->nurbs.order;
 
-    nurbs_add_point(&s->nurbs, at_mm, weight);
-    nurbs_add_knot(&s->nurbs, s->nurbs.points <= order ? 0.0 : (double)(s->nurbs.points - order));
+    takt_nurbs_add_point(&s->nurbs, at_mm, weight);
+    takt_nurbs_add_knot(&s->nurbs,
+                        s->nurbs.points <= order ? 0.0 : (double)(s->nurbs.points - order));
 }
 
 static void close_even(struct program_spline *s)
@@ -79,7 +80,7 @@ static void begin(struct program *p, uint32_t order)
 {
     struct program_spline *s = &p->cycle.spline;
 
-    nurbs_open(&s->nurbs, order);
+    takt_nurbs_open(&s->nurbs, order);
     s->closing = 0;
     for (unsigned i = 0; i < 2; i++) {
         s->from_mm[i] = p->modes.at.at[p->cycle.axis[i]];
@@ -96,13 +97,13 @@ static bool add_cubic(struct program *p, const struct program_code *code)
     double end[2];
 
     if (words_has(p, 'i') != words_has(p, 'j')) {
-        return report_missing(p, code->step, words_has(p, 'i') ? 'j' : 'i');
+        return takt_report_missing(p, code->step, words_has(p, 'i') ? 'j' : 'i');
     }
     if (!words_has(p, 'i') && p->modes.motion != code) {
-        return report_missing(p, code->step, 'i');
+        return takt_report_missing(p, code->step, 'i');
     }
     if (!words_has(p, 'p') || !words_has(p, 'q')) {
-        return report_missing(p, code->step, words_has(p, 'p') ? 'q' : 'p');
+        return takt_report_missing(p, code->step, words_has(p, 'p') ? 'q' : 'p');
     }
     if (words_has(p, 'i')) {
         vector(p, 'i', 'j', lead);
@@ -126,7 +127,7 @@ static bool add_quadratic(struct program *p, const struct program_code *code)
 
     vector(p, 'i', 'j', lead);
     if (lead[0] == 0.0 && lead[1] == 0.0) {
-        return report_missing(p, code->step, words_has(p, 'i') ? 'j' : 'i');
+        return takt_report_missing(p, code->step, words_has(p, 'i') ? 'j' : 'i');
     }
     begin(p, 3);
     point_of_words(p, end);
@@ -141,22 +142,24 @@ static bool add_quadratic(struct program *p, const struct program_code *code)
 static bool take_weight(struct program *p, char letter, double *weight)
 {
     *weight = words_has(p, letter) ? words_value(p, letter) : 1.0;
-    return *weight > 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, letter, *weight);
+    return *weight > 0.0 ||
+           takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, letter, *weight);
 }
 
 static bool take_order(struct program *p, char letter, uint32_t *order)
 {
     *order = ORDER_DEFAULT;
-    return !words_has(p, letter) || words_whole(p, letter, NURBS_ORDER_MIN, NURBS_ORDER_MAX, order);
+    return !words_has(p, letter) ||
+           takt_words_whole(p, letter, NURBS_ORDER_MIN, NURBS_ORDER_MAX, order);
 }
 
 static bool has_both(struct program *p, const struct program_code *code)
 {
     for (unsigned i = 0; i < 2; i++) {
-        const char letter = coordinates_letter(p->cycle.axis[i]);
+        const char letter = takt_coordinates_letter(p->cycle.axis[i]);
 
         if (!words_has(p, letter)) {
-            return report_missing(p, code->step, letter);
+            return takt_report_missing(p, code->step, letter);
         }
     }
     return true;
@@ -178,7 +181,7 @@ static bool add_points(struct program *p, const struct program_code *code)
         begin(p, order < ORDER_DEFAULT ? ORDER_DEFAULT : order);
         add_even(s, s->from_mm, alone ? weight : 1.0);
     } else if (words_has(p, 'l') && order != s->nurbs.order) {
-        return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'l', order);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'l', order);
     }
     p->cycle.spline_open = true;
     if (alone) {
@@ -197,10 +200,10 @@ static bool end_points(struct program *p, const struct program_code *code)
     struct program_spline *s = &p->cycle.spline;
 
     if (!p->cycle.spline_open) {
-        return report_error_code(p, TAKT_ERROR_SPLINE_ABSENT, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_SPLINE_ABSENT, code->step, 0.0);
     }
     if (s->nurbs.points < s->nurbs.order) {
-        return report_error_code(p, TAKT_ERROR_SPLINE_SHORT, code->step, s->nurbs.order);
+        return takt_report_error_code(p, TAKT_ERROR_SPLINE_SHORT, code->step, s->nurbs.order);
     }
     close_even(s);
     p->cycle.spline_open = false;
@@ -223,7 +226,8 @@ static bool begin_knots(struct program *p)
     const double off_mm = maths_sqrt(off[0] * off[0] + off[1] * off[1]);
 
     p->cycle.spline_open = true;
-    return off_mm <= START_MM || report_error_code(p, TAKT_ERROR_SPLINE_START, STEP_MOTION, off_mm);
+    return off_mm <= START_MM ||
+           takt_report_error_code(p, TAKT_ERROR_SPLINE_START, STEP_MOTION, off_mm);
 }
 
 /* Knots rise; between the ends none is as often there as the order, where the curve would be torn. */
@@ -237,7 +241,7 @@ static bool check_knot(struct program *p, double knot)
         const double before = n->knot[(n->knots - back) % NURBS_KEPT];
 
         if (ends ? knot < before : knot <= before) {
-            return report_error_letter(p, TAKT_ERROR_SPLINE_KNOT, 'k', knot);
+            return takt_report_error_letter(p, TAKT_ERROR_SPLINE_KNOT, 'k', knot);
         }
     }
     return maths_is_finite(knot);
@@ -252,28 +256,29 @@ static bool add_knots(struct program *p, const struct program_code *code)
     double at[2];
 
     if (!words_has(p, 'k')) {
-        return report_missing(p, code->step, 'k');
+        return takt_report_missing(p, code->step, 'k');
     }
     if (!take_weight(p, 'r', &weight) || (!alone && !has_both(p, code))) {
         return false;
     }
     if (!p->cycle.spline_open && (alone || !begin_knots(p))) {
-        return !alone ? false : report_error_code(p, TAKT_ERROR_SPLINE_ABSENT, code->step, 0.0);
+        return !alone ? false
+                      : takt_report_error_code(p, TAKT_ERROR_SPLINE_ABSENT, code->step, 0.0);
     }
     if (!alone && s->nurbs.points < s->nurbs.knots) {
-        return report_missing(p, code->step, 'k');
+        return takt_report_missing(p, code->step, 'k');
     }
     if (alone && s->nurbs.points < s->nurbs.order) {
-        return report_error_code(p, TAKT_ERROR_SPLINE_SHORT, code->step, s->nurbs.order);
+        return takt_report_error_code(p, TAKT_ERROR_SPLINE_SHORT, code->step, s->nurbs.order);
     }
     if (!check_knot(p, words_value(p, 'k'))) {
         return false;
     }
     if (!alone) {
         point_of_words(p, at);
-        nurbs_add_point(&s->nurbs, s->nurbs.points == 0 ? s->from_mm : at, weight);
+        takt_nurbs_add_point(&s->nurbs, s->nurbs.points == 0 ? s->from_mm : at, weight);
     }
-    nurbs_add_knot(&s->nurbs, words_value(p, 'k'));
+    takt_nurbs_add_knot(&s->nurbs, words_value(p, 'k'));
     p->cycle.spline_open = s->nurbs.knots < s->nurbs.points + s->nurbs.order;
     return true;
 }
@@ -299,12 +304,12 @@ static bool add_line(struct program *p, const struct program_code *code)
 
 static enum nurbs_result next_piece(struct program_spline *s, struct nurbs_piece *piece)
 {
-    enum nurbs_result result = nurbs_next(&s->nurbs, piece);
+    enum nurbs_result result = takt_nurbs_next(&s->nurbs, piece);
 
     while (result == NURBS_NONE && s->closing > 0) {
-        nurbs_add_knot(&s->nurbs, s->knot_end);
+        takt_nurbs_add_knot(&s->nurbs, s->knot_end);
         s->closing--;
-        result = nurbs_next(&s->nurbs, piece);
+        result = takt_nurbs_next(&s->nurbs, piece);
     }
     return result;
 }
@@ -334,11 +339,11 @@ static bool check_pieces(struct program *p)
         struct move m;
 
         if (result == NURBS_CUSP) {
-            good = report_error_code(p, TAKT_ERROR_SPLINE_CUSP, STEP_MOTION, 0.0);
+            good = takt_report_error_code(p, TAKT_ERROR_SPLINE_CUSP, STEP_MOTION, 0.0);
             break;
         }
         set_move(p, &piece, &m);
-        good = travel_check(p, &m);
+        good = takt_travel_check(p, &m);
         p->modes.at = m.end;
     }
     p->modes.at = at;
@@ -346,7 +351,7 @@ static bool check_pieces(struct program *p)
     return good;
 }
 
-bool spline_next(struct program *p, struct move *move)
+bool takt_spline_next(struct program *p, struct move *move)
 {
     struct nurbs_piece piece;
 
@@ -361,33 +366,33 @@ bool spline_next(struct program *p, struct move *move)
 
 static bool check_use(struct program *p, const struct program_code *code)
 {
-    const char across = coordinates_letter(p->cycle.axis[2]);
+    const char across = takt_coordinates_letter(p->cycle.axis[2]);
     const bool offset_words = code->argument == SPLINE_CUBIC || code->argument == SPLINE_QUADRATIC;
 
     if (p->modes.inverse_time) {
-        return report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
     }
     if (p->modes.cutter_side != CUTTER_OFF) {
-        return report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
     }
     if (offset_words && p->modes.plane != PLANE_XY) {
-        return report_error_code(p, TAKT_ERROR_SPLINE_PLANE, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_SPLINE_PLANE, code->step, 0.0);
     }
     if (words_has(p, across)) {
-        return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, across, 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_UNUSED, across, 0.0);
     }
-    return circular_check_axes(p, p->cycle.axis[0], p->cycle.axis[1]);
+    return takt_circular_check_axes(p, p->cycle.axis[0], p->cycle.axis[1]);
 }
 
-bool spline_start(struct program *p, const struct program_code *code)
+bool takt_spline_start(struct program *p, const struct program_code *code)
 {
     struct program_cycle *c = &p->cycle;
 
-    plane_axes(p->modes.plane, &c->axis[0], &c->axis[1]);
+    takt_plane_axes(p->modes.plane, &c->axis[0], &c->axis[1]);
     c->axis[2] = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - c->axis[0] - c->axis[1]);
-    emit_prepare(p, MOVE_SPLINE, &p->modes.at, &c->feed);
+    takt_emit_prepare(p, MOVE_SPLINE, &p->modes.at, &c->feed);
     c->feed.plane = p->modes.plane;
-    if (!check_use(p, code) || !emit_set_feed(p, &c->feed) || !add_line(p, code) ||
+    if (!check_use(p, code) || !takt_emit_set_feed(p, &c->feed) || !add_line(p, code) ||
         !check_pieces(p)) {
         return false;
     }

@@ -16,15 +16,15 @@ enum spline {
     SPLINE_END,  /* G5.3 */
     SPLINE_KNOTS /* G6.2: control points, R their weights, K the knots, P the order */
 };
-bool spline_start(struct program *p, const struct program_code *code);
+bool takt_spline_start(struct program *p, const struct program_code *code);
 
 /* Between the first and the last control point only F may come. False: p->error is set. */
-bool spline_allows(struct program *p, const struct program_code *code);
+bool takt_spline_allows(struct program *p, const struct program_code *code);
 
 /* The text ends. False: within a spline, p->error is set. */
-bool spline_ends(struct program *p);
+bool takt_spline_ends(struct program *p);
 
 /* The next piece; false: there is none until the next line. */
-bool spline_next(struct program *p, struct move *move);
+bool takt_spline_next(struct program *p, struct move *move);
 
 #endif

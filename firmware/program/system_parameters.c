@@ -13,14 +13,14 @@ static bool is_tool(unsigned number)
     return number >= PARAMETER_TOOL_NUMBER && number <= PARAMETER_TOOL_SIDE;
 }
 
-bool system_parameter_is_read_only(unsigned number)
+bool takt_system_parameter_is_read_only(unsigned number)
 {
     return is_position(number) || is_tool(number);
 }
 
 static double tool_parameter(const struct program *p, unsigned number)
 {
-    const struct tool *tool = tool_values_find(p, p->modes.tool_current);
+    const struct tool *tool = takt_tool_values_find(p, p->modes.tool_current);
 
     if (number == PARAMETER_TOOL_NUMBER) {
         return p->modes.tool_current;
@@ -31,7 +31,7 @@ static double tool_parameter(const struct program *p, unsigned number)
     const unsigned axis = number - PARAMETER_TOOL_OFFSET;
 
     if (axis < AXIS_COUNT) {
-        return coordinates_to_parameter(tool->offset.at[axis], (enum axis)axis);
+        return takt_coordinates_to_parameter(tool->offset.at[axis], (enum axis)axis);
     }
     switch (number) {
     case PARAMETER_TOOL_DIAMETER:
@@ -47,16 +47,16 @@ static double tool_parameter(const struct program *p, unsigned number)
     }
 }
 
-double system_parameter_get(const struct program *p, unsigned number)
+double takt_system_parameter_get(const struct program *p, unsigned number)
 {
     if (number < PARAMETER_TOOL_NUMBER) {
-        return parameters_get(p->config.parameters, number);
+        return takt_parameters_get(p->config.parameters, number);
     }
     if (is_position(number)) {
-        return coordinates_work(p, (enum axis)(number - PARAMETER_POSITION));
+        return takt_coordinates_work(p, (enum axis)(number - PARAMETER_POSITION));
     }
     if (is_tool(number)) {
         return tool_parameter(p, number);
     }
-    return parameters_get(p->config.parameters, number);
+    return takt_parameters_get(p->config.parameters, number);
 }

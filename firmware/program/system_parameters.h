@@ -7,9 +7,9 @@
 #include "program/program.h"
 
 /* number: 1 ... PARAMETER_NUMBER_MAX. */
-double system_parameter_get(const struct program *p, unsigned number);
+double takt_system_parameter_get(const struct program *p, unsigned number);
 
 /* True for the computed ones, which programs cannot set. */
-bool system_parameter_is_read_only(unsigned number);
+bool takt_system_parameter_is_read_only(unsigned number);
 
 #endif

@@ -32,24 +32,24 @@ static bool check_words(struct program *p, const struct program_code *code)
     static const char needed[] = "pijk";
 
     if ((p->words.given & LETTERS_LINEAR) == 0) {
-        return report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
     }
     for (unsigned i = 0; i < sizeof(needed) - 1; i++) {
         if (!words_has(p, needed[i])) {
-            return report_missing(p, code->step, needed[i]);
+            return takt_report_missing(p, code->step, needed[i]);
         }
     }
     if (words_value(p, 'p') <= 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'p', words_value(p, 'p'));
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'p', words_value(p, 'p'));
     }
     if (words_value(p, 'i') == 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_ZERO, 'i', 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_ZERO, 'i', 0.0);
     }
     if (words_value(p, 'j') <= 0.0) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'j', words_value(p, 'j'));
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'j', words_value(p, 'j'));
     }
     if (words_value(p, 'k') <= words_value(p, 'j')) {
-        return report_error_letter(p, TAKT_ERROR_THREAD_DEPTH, 'k', 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_THREAD_DEPTH, 'k', 0.0);
     }
     return true;
 }
@@ -68,10 +68,11 @@ static bool set_cuts(struct program *p, const struct program_code *code, struct 
     t->degression = maths_max(word_or(p, 'r', 1.0), 1.0);
     t->pass = 1;
     t->springs = 0;
-    if (!(maths_power(t->height_mm / t->cut_mm, t->degression) <= PROGRAM_REPEATS_MAX)) {
-        return report_error_code(p, TAKT_ERROR_CYCLE_TOO_LONG, code->step, PROGRAM_REPEATS_MAX);
+    if (!(takt_maths_power(t->height_mm / t->cut_mm, t->degression) <= PROGRAM_REPEATS_MAX)) {
+        return takt_report_error_code(p, TAKT_ERROR_CYCLE_TOO_LONG, code->step,
+                                      PROGRAM_REPEATS_MAX);
     }
-    return !words_has(p, 'h') || words_whole(p, 'h', 0.0, SPRING_CUTS_MAX, &t->springs);
+    return !words_has(p, 'h') || takt_words_whole(p, 'h', 0.0, SPRING_CUTS_MAX, &t->springs);
 }
 
 /*
@@ -84,7 +85,7 @@ static bool set_taper(struct program *p, struct program_thread *t)
     const double length_mm = maths_max(word_or(p, 'e', 0.0) * p->modes.unit_mm, 0.0);
     uint32_t which = 0;
 
-    if (words_has(p, 'l') && !words_whole(p, 'l', 0.0, TAPER_MAX, &which)) {
+    if (words_has(p, 'l') && !takt_words_whole(p, 'l', 0.0, TAPER_MAX, &which)) {
         return false;
     }
     t->pitch_mm = words_value(p, 'p') * p->modes.unit_mm;
@@ -105,9 +106,9 @@ static bool set_flank(struct program *p, struct program_thread *t)
     const double sign = t->end_mm[AXIS_Z] > t->start_mm[AXIS_Z] ? -1.0 : 1.0;
 
     if (maths_abs(degrees) > FLANK_MAX_DEGREE) {
-        return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'q', degrees);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'q', degrees);
     }
-    t->slope = sign * maths_tan(degrees * RAD_PER_DEGREE);
+    t->slope = sign * takt_maths_tan(degrees * RAD_PER_DEGREE);
     t->length_end_mm = t->end_mm[AXIS_Z] + t->height_mm * t->slope;
     return true;
 }
@@ -117,10 +118,10 @@ static void set_ends(const struct program *p, struct program_thread *t)
     struct point end;
     struct point work;
 
-    coordinates_end(p, &end);
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_end(p, &end);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     memcpy(t->start_mm, work.at, sizeof(t->start_mm));
-    coordinates_work_of(p, &end, &work);
+    takt_coordinates_work_of(p, &end, &work);
     memcpy(t->end_mm, work.at, sizeof(t->end_mm));
 }
 
@@ -135,7 +136,7 @@ static void place(const struct program *p, double away_mm, double z_mm, struct p
 {
     const struct program_thread *t = &p->cycle.thread;
 
-    coordinates_work_of(p, &p->modes.at, work);
+    takt_coordinates_work_of(p, &p->modes.at, work);
     work->at[AXIS_X] = t->start_mm[AXIS_X] + t->side * away_mm;
     work->at[AXIS_Y] = t->start_mm[AXIS_Y];
     work->at[AXIS_Z] = z_mm;
@@ -154,7 +155,7 @@ static bool check_cut(struct program *p)
 
     for (unsigned i = 0; i < 8; i++) {
         place(p, away_mm[i / 4], z_mm[i % 4], &work);
-        if (!cycles_check_travel(p, &work)) {
+        if (!takt_cycles_check_travel(p, &work)) {
             return false;
         }
     }
@@ -175,12 +176,12 @@ static bool check_travel(struct program *p)
     const bool good = check_cut(p);
 
     t->depth_mm = depth_mm;
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     memcpy(work.at, t->end_mm, sizeof(t->end_mm));
-    return good && cycles_check_travel(p, &work);
+    return good && takt_cycles_check_travel(p, &work);
 }
 
-bool threading_start(struct program *p, const struct program_code *code)
+bool takt_threading_start(struct program *p, const struct program_code *code)
 {
     struct program_cycle *c = &p->cycle;
     struct program_thread *t = &c->thread;
@@ -193,10 +194,10 @@ bool threading_start(struct program *p, const struct program_code *code)
     if (!set_cuts(p, code, t) || !set_taper(p, t) || !set_flank(p, t) || !check_travel(p)) {
         return false;
     }
-    emit_prepare(p, MOVE_THREAD, &p->modes.at, &c->feed);
+    takt_emit_prepare(p, MOVE_THREAD, &p->modes.at, &c->feed);
     c->feed.overrides &= ~(OVERRIDE_FEED | OVERRIDE_SPINDLE);
     c->feed.feed_rev_mm = t->pitch_mm;
-    if (!emit_set_feed(p, &c->feed)) {
+    if (!takt_emit_set_feed(p, &c->feed)) {
         return false;
     }
     c->code = code;
@@ -210,7 +211,7 @@ static bool rapid(struct program *p, double away_mm, double z_mm, struct move *m
     struct point work;
 
     place(p, away_mm, z_mm, &work);
-    return cycles_move(p, MOVE_RAPID, &work, move);
+    return takt_cycles_move(p, MOVE_RAPID, &work, move);
 }
 
 static bool cut(struct program *p, double away_mm, double z_mm, double pitch_mm, struct move *move)
@@ -218,7 +219,7 @@ static bool cut(struct program *p, double away_mm, double z_mm, double pitch_mm,
     struct point work;
 
     place(p, away_mm, z_mm, &work);
-    if (!cycles_move(p, MOVE_THREAD, &work, move)) {
+    if (!takt_cycles_move(p, MOVE_THREAD, &work, move)) {
         return false;
     }
     move->feed_mm_s *= pitch_mm / move->feed_rev_mm;
@@ -261,8 +262,9 @@ static bool next_cut(struct program_thread *t)
         return t->springs-- > 0;
     }
     t->pass++;
-    t->depth_mm = maths_min(
-        t->first_mm + t->cut_mm * maths_power((double)t->pass, 1.0 / t->degression), t->last_mm);
+    t->depth_mm =
+        maths_min(t->first_mm + t->cut_mm * takt_maths_power((double)t->pass, 1.0 / t->degression),
+                  t->last_mm);
     return true;
 }
 
@@ -271,13 +273,13 @@ static bool finish(struct program *p, struct move *move)
 {
     struct point work;
 
-    coordinates_work_of(p, &p->modes.at, &work);
+    takt_coordinates_work_of(p, &p->modes.at, &work);
     memcpy(work.at, p->cycle.thread.end_mm, sizeof(p->cycle.thread.end_mm));
     p->cycle.code = NULL;
-    return cycles_move(p, MOVE_RAPID, &work, move);
+    return takt_cycles_move(p, MOVE_RAPID, &work, move);
 }
 
-bool threading_next(struct program *p, struct move *move)
+bool takt_threading_next(struct program *p, struct move *move)
 {
     struct program_cycle *c = &p->cycle;
 

@@ -19,9 +19,9 @@
 
 #include "program/program.h"
 
-bool threading_start(struct program *p, const struct program_code *code);
+bool takt_threading_start(struct program *p, const struct program_code *code);
 
-/* See cycles_next. */
-bool threading_next(struct program *p, struct move *move);
+/* See takt_cycles_next. */
+bool takt_threading_next(struct program *p, struct move *move);
 
 #endif

@@ -16,25 +16,26 @@ static int index_of(const struct program_tools *tools, uint32_t number)
     return NONE;
 }
 
-const struct tool *tool_values_find(const struct program *p, uint32_t number)
+const struct tool *takt_tool_values_find(const struct program *p, uint32_t number)
 {
     const int i = index_of(&p->tools, number);
 
-    return i != NONE ? &p->tools.tool[i] : tool_table_find(p->config.tools, number);
+    return i != NONE ? &p->tools.tool[i] : takt_tool_table_find(p->config.tools, number);
 }
 
-struct tool *tool_values_change(struct program *p, enum step step, uint32_t number)
+struct tool *takt_tool_values_change(struct program *p, enum step step, uint32_t number)
 {
     struct program_tools *tools = &p->tools;
-    const struct tool *tool = tool_values_find(p, number);
+    const struct tool *tool = takt_tool_values_find(p, number);
     int i = index_of(tools, number);
 
     if (tool == NULL) {
-        (void)report_error_code(p, TAKT_ERROR_TOOL_ABSENT, step, number);
+        (void)takt_report_error_code(p, TAKT_ERROR_TOOL_ABSENT, step, number);
         return NULL;
     }
     if (i == NONE && tools->count == PROGRAM_TOOL_CHANGES_MAX) {
-        (void)report_error_code(p, TAKT_ERROR_TOOL_CHANGES_FULL, step, PROGRAM_TOOL_CHANGES_MAX);
+        (void)takt_report_error_code(p, TAKT_ERROR_TOOL_CHANGES_FULL, step,
+                                     PROGRAM_TOOL_CHANGES_MAX);
         return NULL;
     }
     tools->before = *tool;
@@ -46,13 +47,13 @@ struct tool *tool_values_change(struct program *p, enum step step, uint32_t numb
     return &tools->tool[i];
 }
 
-void tool_values_begin_line(struct program *p)
+void takt_tool_values_begin_line(struct program *p)
 {
     p->tools.changed = NONE;
     p->tools.count_before = p->tools.count;
 }
 
-void tool_values_take_back(struct program *p)
+void takt_tool_values_take_back(struct program *p)
 {
     if (p->tools.changed != NONE) {
         p->tools.tool[p->tools.changed] = p->tools.before;

@@ -8,16 +8,16 @@
 #include "program/program.h"
 
 /* NULL when there is no such tool. */
-const struct tool *tool_values_find(const struct program *p, uint32_t number);
+const struct tool *takt_tool_values_find(const struct program *p, uint32_t number);
 
 /*
- * The tool for the code of a step to change; tool_values_take_back undoes what one line changes. NULL: p->error is
+ * The tool for the code of a step to change; takt_tool_values_take_back undoes what one line changes. NULL: p->error is
  * set.
  */
-struct tool *tool_values_change(struct program *p, enum step step, uint32_t number);
+struct tool *takt_tool_values_change(struct program *p, enum step step, uint32_t number);
 
 /* Before each line, and after one with an error. */
-void tool_values_begin_line(struct program *p);
-void tool_values_take_back(struct program *p);
+void takt_tool_values_begin_line(struct program *p);
+void takt_tool_values_take_back(struct program *p);
 
 #endif

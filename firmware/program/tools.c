@@ -1,6 +1,6 @@
 #include "program/tools.h"
 
-const struct tool *tool_table_find(const struct tool_table *table, uint32_t number)
+const struct tool *takt_tool_table_find(const struct tool_table *table, uint32_t number)
 {
     for (size_t i = 0; table != NULL && i < table->count; i++) {
         if (table->tools[i].number == number) {

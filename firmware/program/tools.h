@@ -24,6 +24,6 @@ struct tool_table {
 };
 
 /* NULL when there is no such tool, or table is NULL. */
-const struct tool *tool_table_find(const struct tool_table *table, uint32_t number);
+const struct tool *takt_tool_table_find(const struct tool_table *table, uint32_t number);
 
 #endif

@@ -50,11 +50,11 @@ static bool check_quarter(const struct travel *t, const struct curve_arc *arc, u
     if (arc->sweep_rad < 0.0) {
         turned = -turned;
     }
-    turned -= MATHS_TWO_PI * maths_floor(turned / MATHS_TWO_PI);
+    turned -= MATHS_TWO_PI * takt_maths_floor(turned / MATHS_TWO_PI);
     if (turned > sweep) {
         return true;
     }
-    const double last = turned + MATHS_TWO_PI * maths_floor((sweep - turned) / MATHS_TWO_PI);
+    const double last = turned + MATHS_TWO_PI * takt_maths_floor((sweep - turned) / MATHS_TWO_PI);
     const double first_mm = arc->radius_start_mm + arc->radius_change_mm * turned / sweep;
     const double last_mm = arc->radius_start_mm + arc->radius_change_mm * last / sweep;
 
@@ -69,10 +69,10 @@ static bool check_involute_quarter(const struct travel *t, const struct curve *c
     struct point p;
     double s_mm;
 
-    if (!involute_extreme(c, quarter, &s_mm)) {
+    if (!takt_involute_extreme(c, quarter, &s_mm)) {
         return true;
     }
-    curve_point(c, s_mm, &p);
+    takt_curve_point(c, s_mm, &p);
     return check_axis(t, axis, p.at[axis]);
 }
 
@@ -84,8 +84,8 @@ static bool check_quintic(const struct travel *t, const struct curve *c)
         struct point p;
         double s_mm;
 
-        if (quintic_extreme(c, i, &s_mm)) {
-            curve_point(c, s_mm, &p);
+        if (takt_quintic_extreme(c, i, &s_mm)) {
+            takt_curve_point(c, s_mm, &p);
             if (!check_axis(t, axis, p.at[axis])) {
                 return false;
             }
@@ -94,11 +94,11 @@ static bool check_quintic(const struct travel *t, const struct curve *c)
     return true;
 }
 
-static bool check_bent(const struct travel *t, const struct point *start, const struct move *m)
+static bool check_curved(const struct travel *t, const struct point *start, const struct move *m)
 {
     struct curve c;
 
-    if (!move_curve(m, start, &c)) {
+    if (!takt_move_curve(m, start, &c)) {
         return true;
     }
     if (c.kind == CURVE_QUINTIC) {
@@ -115,8 +115,8 @@ static bool check_bent(const struct travel *t, const struct point *start, const 
     return true;
 }
 
-bool travel_holds(const struct program_config *config, const struct point *start,
-                  const struct move *m, struct travel_excess *excess)
+bool takt_travel_holds(const struct program_config *config, const struct point *start,
+                       const struct move *m, struct travel_excess *excess)
 {
     const struct travel t = {config, excess};
 
@@ -125,15 +125,15 @@ bool travel_holds(const struct program_config *config, const struct point *start
             return false;
         }
     }
-    return !move_is_bent(m) || check_bent(&t, start, m);
+    return !move_is_curved(m) || check_curved(&t, start, m);
 }
 
-void travel_report(struct diagnostic *d, uint32_t line, uint32_t column,
-                   const struct travel_excess *excess)
+void takt_travel_report(struct diagnostic *d, uint32_t line, uint32_t column,
+                        const struct travel_excess *excess)
 {
-    diagnostic_set(d, TAKT_ERROR_TRAVEL_EXCEEDED, line, column, &AXIS_LETTERS[excess->axis], 1,
-                   coordinates_to_parameter(excess->value, excess->axis));
-    diagnostic_set_limit(d, coordinates_to_parameter(excess->limit, excess->axis));
+    takt_diagnostic_set(d, TAKT_ERROR_TRAVEL_EXCEEDED, line, column, &AXIS_LETTERS[excess->axis], 1,
+                        takt_coordinates_to_parameter(excess->value, excess->axis));
+    takt_diagnostic_set_limit(d, takt_coordinates_to_parameter(excess->limit, excess->axis));
 }
 
 /* The axis's word, or the code that moves it when it has none. */
@@ -147,14 +147,14 @@ static struct program_span span_of(const struct program *p, enum axis axis)
     return p->words.code_span[words_has_step(p, STEP_MOTION) ? STEP_MOTION : STEP_REFERENCE];
 }
 
-bool travel_check(struct program *p, const struct move *m)
+bool takt_travel_check(struct program *p, const struct move *m)
 {
     struct travel_excess excess;
 
-    if (m->cutter_side != CUTTER_OFF || travel_holds(&p->config, &p->modes.at, m, &excess)) {
+    if (m->cutter_side != CUTTER_OFF || takt_travel_holds(&p->config, &p->modes.at, m, &excess)) {
         return true;
     }
-    travel_report(&p->error, p->lexer.line, lexer_column(&p->lexer, span_of(p, excess.axis).begin),
-                  &excess);
+    takt_travel_report(&p->error, p->lexer.line,
+                       takt_lexer_column(&p->lexer, span_of(p, excess.axis).begin), &excess);
     return false;
 }

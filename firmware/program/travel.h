@@ -13,17 +13,17 @@ struct travel_excess {
 };
 
 /* Does a motion from start stay inside? False: *excess says where not. */
-bool travel_holds(const struct program_config *config, const struct point *start,
-                  const struct move *m, struct travel_excess *excess);
+bool takt_travel_holds(const struct program_config *config, const struct point *start,
+                       const struct move *m, struct travel_excess *excess);
 
 /* Says so about a place in the text, with what the axis is named by: mm or degrees. */
-void travel_report(struct diagnostic *d, uint32_t line, uint32_t column,
-                   const struct travel_excess *excess);
+void takt_travel_report(struct diagnostic *d, uint32_t line, uint32_t column,
+                        const struct travel_excess *excess);
 
 /*
  * The same for a motion from the current position; a compensated one is looked at when its way is known. False:
  * p->error names the axis and the coordinate (mm or degrees).
  */
-bool travel_check(struct program *p, const struct move *m);
+bool takt_travel_check(struct program *p, const struct move *m);
 
 #endif

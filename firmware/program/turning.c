@@ -23,7 +23,7 @@ static void mirror(struct turning *t, struct profile *p)
 
     t->mirror_v = first->v > last->v;
     t->mirror_u = first->u < last->u;
-    profile_mirror(p, t->mirror_u, t->mirror_v);
+    takt_profile_mirror(p, t->mirror_u, t->mirror_v);
 }
 
 /* G70 goes along Z, or along X if the profile turns back in Z. */
@@ -31,13 +31,13 @@ static void set_frame(struct turning *t)
 {
     if (t->words.kind == TURNING_FINISH) {
         mirror(t, &t->profile);
-        t->turned = !profile_falls(&t->profile, 1);
-        profile_mirror(&t->profile, t->mirror_u, t->mirror_v);
+        t->turned = !takt_profile_falls(&t->profile, 1);
+        takt_profile_mirror(&t->profile, t->mirror_u, t->mirror_v);
     } else {
         t->turned = t->words.facing;
     }
     if (t->turned) {
-        profile_turn(&t->profile);
+        takt_profile_turn(&t->profile);
     }
     mirror(t, &t->profile);
 }
@@ -54,7 +54,7 @@ static void add(struct turning *t, bool rapid, struct profile_point end)
 static void add_along(struct turning *t, bool rapid, const struct profile_segment *s,
                       struct profile_point end)
 {
-    const double length = profile_distance(&t->at, &end);
+    const double length = takt_profile_distance(&t->at, &end);
 
     if (s->kind == PROFILE_ARC && length <= PROFILE_SAME_MM) {
         t->at = end;
@@ -89,7 +89,7 @@ static bool get_piece(const struct turning *t, unsigned number, struct profile_s
     if (!has_two(s)) {
         return number % 2 == 0;
     }
-    const double r = profile_distance(&s->start, &s->centre);
+    const double r = takt_profile_distance(&s->start, &s->centre);
     const struct profile_point middle = {s->centre.u, s->centre.v + (s->left ? r : -r)};
 
     if (number % 2 == 0) {
@@ -113,7 +113,7 @@ static void lower_level(struct turning *t)
     const double above = t->level_mm - PROFILE_SAME_MM - t->at.v;
 
     if (above > 0.0) {
-        t->level_mm -= maths_ceil(above / t->words.step_mm) * t->words.step_mm;
+        t->level_mm -= takt_maths_ceil(above / t->words.step_mm) * t->words.step_mm;
     }
 }
 
@@ -123,7 +123,7 @@ static void go_down(struct turning *t, const struct profile_segment *s)
     const bool first = t->piece == 0;
     struct profile_point end = {0.0, t->level_mm};
 
-    if (t->level_mm >= s->end.v && profile_cross(s, t->level_mm, &end.u)) {
+    if (t->level_mm >= s->end.v && takt_profile_cross(s, t->level_mm, &end.u)) {
         add_along(t, first, s, end);
         return;
     }
@@ -159,7 +159,7 @@ static void cut_level(struct turning *t)
         struct profile_segment s;
         double u;
 
-        if (!get_piece(t, i, &s) || !profile_cross(&s, t->at.v, &u) ||
+        if (!get_piece(t, i, &s) || !takt_profile_cross(&s, t->at.v, &u) ||
             u - PROFILE_SAME_MM > t->at.u) {
             continue;
         }
@@ -170,7 +170,7 @@ static void cut_level(struct turning *t)
         if (i == t->piece) {
             continue;
         }
-        if (profile_distance(&t->at, &s.start) < PROFILE_SAME_MM) {
+        if (takt_profile_distance(&t->at, &s.start) < PROFILE_SAME_MM) {
             t->piece = i;
         } else {
             t->level_mm -= t->words.step_mm;
@@ -191,7 +191,7 @@ static void step_down(struct turning *t, const struct profile_segment *s)
     if (t->piece + 2 >= pieces(t)) {
         t->stage = TURNING_DONE;
     } else if (maths_abs(t->at.v - t->level_mm) > PROFILE_SAME_MM ||
-               profile_distance(&t->at, &s->end) == 0.0) {
+               takt_profile_distance(&t->at, &s->end) == 0.0) {
         t->piece++;
     } else {
         cut_level(t);
@@ -234,10 +234,10 @@ static void step_rises(struct turning *t, const struct profile_segment *s)
 {
     double u;
 
-    if (s->end.v >= s->start.v && profile_cross(s, t->at.v, &u)) {
+    if (s->end.v >= s->start.v && takt_profile_cross(s, t->at.v, &u)) {
         const struct profile_point over = {u, t->at.v};
 
-        if (profile_distance(&over, &t->at) > PROFILE_SAME_MM) {
+        if (takt_profile_distance(&over, &t->at) > PROFILE_SAME_MM) {
             add(t, false, over);
         }
         t->at = over;
@@ -253,9 +253,9 @@ static bool begin_pass(struct turning *t)
 {
     const double share = (double)(t->pass - 1) / (double)t->words.passes;
 
-    if (!profile_offset(&t->profile,
-                        t->words.last_mm + share * (t->words.distance_mm - t->words.last_mm),
-                        &t->path)) {
+    if (!takt_profile_offset(&t->profile,
+                             t->words.last_mm + share * (t->words.distance_mm - t->words.last_mm),
+                             &t->path)) {
         return false;
     }
     add(t, true, t->path.segment[0].start);
@@ -333,21 +333,21 @@ static void start_before(struct profile *p)
     way->start.u = maths_max(way->start.u, way->end.u);
 }
 
-enum turning_result turning_open(struct turning *t)
+enum turning_result takt_turning_open(struct turning *t)
 {
     set_frame(t);
     start_before(&t->profile);
-    if (!profile_falls(&t->profile, 0)) {
+    if (!takt_profile_falls(&t->profile, 0)) {
         return TURNING_NOT_MONOTONE;
     }
-    if (!profile_round(&t->profile) || !profile_falls(&t->profile, 0)) {
+    if (!takt_profile_round(&t->profile) || !takt_profile_falls(&t->profile, 0)) {
         return TURNING_CORNER;
     }
-    turning_begin(t);
+    takt_turning_begin(t);
     return t->stage == TURNING_DONE ? TURNING_SWALLOWED : TURNING_GOOD;
 }
 
-void turning_begin(struct turning *t)
+void takt_turning_begin(struct turning *t)
 {
     t->moves = 0;
     t->fetched = 0;
@@ -361,7 +361,7 @@ void turning_begin(struct turning *t)
         t->stage = begin_pass(t) ? TURNING_DRAW : TURNING_DONE;
         return;
     }
-    if (!profile_offset(&t->profile, t->words.distance_mm, &t->path)) {
+    if (!takt_profile_offset(&t->profile, t->words.distance_mm, &t->path)) {
         t->stage = TURNING_DONE;
         return;
     }
@@ -370,7 +370,7 @@ void turning_begin(struct turning *t)
     t->stage = t->words.kind == TURNING_POCKETS ? TURNING_SKIP : TURNING_DOWN;
 }
 
-bool turning_next(struct turning *t, struct turning_move *move)
+bool takt_turning_next(struct turning *t, struct turning_move *move)
 {
     while (t->fetched == t->moves) {
         if (t->stage == TURNING_DONE) {

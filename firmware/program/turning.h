@@ -44,7 +44,8 @@ struct turning_words {
 
 struct turning {
     /* set by the caller */
-    struct profile profile; /* from where the tool is; turning_open turns it as profile.h says */
+    struct profile
+        profile; /* from where the tool is; takt_turning_open turns it as profile.h says */
     struct turning_words words;
 
     struct profile_path path;
@@ -62,12 +63,12 @@ struct turning {
 enum turning_result { TURNING_GOOD, TURNING_NOT_MONOTONE, TURNING_CORNER, TURNING_SWALLOWED };
 
 /* False: not possible so, *why. */
-enum turning_result turning_open(struct turning *t);
+enum turning_result takt_turning_open(struct turning *t);
 
 /* Goes back to the first move of an opened one. */
-void turning_begin(struct turning *t);
+void takt_turning_begin(struct turning *t);
 
 /* False: that was the last one. */
-bool turning_next(struct turning *t, struct turning_move *move);
+bool takt_turning_next(struct turning *t, struct turning_move *move);
 
 #endif

@@ -41,7 +41,7 @@ static bool unknown_word(struct program *p, unsigned begin)
     while ((l->text[l->at] >= '0' && l->text[l->at] <= '9') || l->text[l->at] == '.') {
         l->at++;
     }
-    return report_error(p, TAKT_ERROR_WORD_UNKNOWN, span_from(p, begin), 0.0);
+    return takt_report_error(p, TAKT_ERROR_WORD_UNKNOWN, span_from(p, begin), 0.0);
 }
 
 static void add_step(struct program *p, const struct program_code *code, struct program_span span)
@@ -73,7 +73,7 @@ static bool add_code(struct program *p, const struct program_code *code, struct 
         return true;
     }
     if (contradicts(w, code)) {
-        return report_error(p, TAKT_ERROR_WORDS_CONFLICT, span, 0.0);
+        return takt_report_error(p, TAKT_ERROR_WORDS_CONFLICT, span, 0.0);
     }
     if (code->group != GROUP_NONE) {
         w->groups |= UINT32_C(1) << code->group;
@@ -88,17 +88,17 @@ static bool read_code(struct program *p, char letter, unsigned begin)
     const struct program_code *code = NULL;
     double value;
 
-    if (!expression_read(p, &value)) {
+    if (!takt_expression_read(p, &value)) {
         return false;
     }
-    const double number_x10 = maths_round(value * 10.0);
+    const double number_x10 = takt_maths_round(value * 10.0);
 
     if (maths_abs(value * 10.0 - number_x10) <= CODE_WHOLE_MAX && number_x10 >= 0.0 &&
         number_x10 < CODE_ANY) {
-        code = code_find(letter, (unsigned)number_x10);
+        code = takt_code_find(letter, (unsigned)number_x10);
     }
     if (code == NULL) {
-        return report_error(p, TAKT_ERROR_WORD_UNKNOWN, span_from(p, begin), 0.0);
+        return takt_report_error(p, TAKT_ERROR_WORD_UNKNOWN, span_from(p, begin), 0.0);
     }
     return add_code(p, code, span_from(p, begin));
 }
@@ -121,20 +121,20 @@ static bool read_value(struct program *p, char letter, unsigned begin)
     const unsigned i = LETTER_INDEX(letter);
 
     if (!contour_is_open(p) && is_missing_axis(p, letter)) {
-        return report_error_at(p, TAKT_ERROR_AXIS_MISSING, begin, 0.0);
+        return takt_report_error_at(p, TAKT_ERROR_AXIS_MISSING, begin, 0.0);
     }
     if ((LETTER_BIT(letter) & letters_known(p)) == 0) {
         return unknown_word(p, begin);
     }
     if (words_has(p, letter)) {
-        return report_error_at(p, TAKT_ERROR_WORD_REPEATED, begin, 0.0);
+        return takt_report_error_at(p, TAKT_ERROR_WORD_REPEATED, begin, 0.0);
     }
-    if (!expression_read(p, &w->value[i])) {
+    if (!takt_expression_read(p, &w->value[i])) {
         return false;
     }
     w->given |= LETTER_BIT(letter);
     w->span[i] = span_from(p, begin);
-    const struct program_code *code = code_find(letter, CODE_ANY);
+    const struct program_code *code = takt_code_find(letter, CODE_ANY);
 
     if (code != NULL) {
         add_step(p, code, w->span[i]);
@@ -148,9 +148,10 @@ static bool is_read_only(const struct program *p, const struct program_reference
     double ignored;
 
     if (reference->number != 0) {
-        return system_parameter_is_read_only(reference->number);
+        return takt_system_parameter_is_read_only(reference->number);
     }
-    return predefined_get(p, name, (size_t)(reference->span.end - reference->span.begin), &ignored);
+    return takt_predefined_get(p, name, (size_t)(reference->span.end - reference->span.begin),
+                               &ignored);
 }
 
 static bool read_assignment(struct program *p, unsigned begin)
@@ -158,21 +159,22 @@ static bool read_assignment(struct program *p, unsigned begin)
     struct program_words *w = &p->words;
 
     if (w->assignments == PROGRAM_ASSIGNMENTS_MAX) {
-        return report_error_at(p, TAKT_ERROR_ASSIGNMENTS_TOO_MANY, begin, PROGRAM_ASSIGNMENTS_MAX);
+        return takt_report_error_at(p, TAKT_ERROR_ASSIGNMENTS_TOO_MANY, begin,
+                                    PROGRAM_ASSIGNMENTS_MAX);
     }
     struct program_assignment *a = &w->assignment[w->assignments];
 
-    if (!expression_read_reference(p, &a->reference)) {
+    if (!takt_expression_read_reference(p, &a->reference)) {
         return false;
     }
     if (is_read_only(p, &a->reference)) {
-        return report_error(p, TAKT_ERROR_PARAMETER_READ_ONLY, a->reference.span, 0.0);
+        return takt_report_error(p, TAKT_ERROR_PARAMETER_READ_ONLY, a->reference.span, 0.0);
     }
-    if (!lexer_accept(&p->lexer, '=')) {
-        return report_error(p, TAKT_ERROR_EQUALS_EXPECTED, span_from(p, begin), 0.0);
+    if (!takt_lexer_accept(&p->lexer, '=')) {
+        return takt_report_error(p, TAKT_ERROR_EQUALS_EXPECTED, span_from(p, begin), 0.0);
     }
     w->assignments++;
-    return expression_read(p, &a->value);
+    return takt_expression_read(p, &a->value);
 }
 
 /* $0 is the only spindle there is, $-1 all of them. */
@@ -180,11 +182,11 @@ static bool read_spindle(struct program *p, unsigned begin)
 {
     double number;
 
-    if (!expression_read(p, &number)) {
+    if (!takt_expression_read(p, &number)) {
         return false;
     }
     if (number != 0.0 && number != -1.0) {
-        return report_error(p, TAKT_ERROR_WORD_OUT_OF_RANGE, span_from(p, begin), number);
+        return takt_report_error(p, TAKT_ERROR_WORD_OUT_OF_RANGE, span_from(p, begin), number);
     }
     return true;
 }
@@ -201,7 +203,7 @@ static bool read_word(struct program *p)
         return read_spindle(p, begin);
     }
     if (letter < 'a' || letter > 'z') {
-        return report_error_at(p, TAKT_ERROR_CHARACTER_UNKNOWN, begin, 0.0);
+        return takt_report_error_at(p, TAKT_ERROR_CHARACTER_UNKNOWN, begin, 0.0);
     }
     if (letter == 'g' || letter == 'm') {
         return read_code(p, letter, begin);
@@ -214,7 +216,7 @@ static bool skip_line_number(struct program *p)
 {
     double ignored;
 
-    return !lexer_accept(&p->lexer, 'n') || expression_read(p, &ignored);
+    return !takt_lexer_accept(&p->lexer, 'n') || takt_expression_read(p, &ignored);
 }
 
 /* The first of some letters, as they stand on the line; one of them is given. */
@@ -256,7 +258,7 @@ static uint32_t motion_letters(const struct program *p)
     if (contour_is_open(p)) {
         return LETTERS_AXES | LETTERS_NO_AXIS;
     }
-    if (motion != NULL && motion->run == circular_move) {
+    if (motion != NULL && motion->run == takt_circular_move) {
         return LETTERS_AXES | LETTERS_CENTRE;
     }
     return LETTERS_AXES;
@@ -273,7 +275,7 @@ static bool add_implied_motion(struct program *p, uint32_t used)
     const char letter = first_given(p, asking);
 
     if (p->modes.motion == NULL) {
-        return report_error_letter(p, TAKT_ERROR_MOTION_MODE_MISSING, letter, 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_MOTION_MODE_MISSING, letter, 0.0);
     }
     add_step(p, p->modes.motion, p->words.span[LETTER_INDEX(letter)]);
     return true;
@@ -295,12 +297,12 @@ static bool check_use(struct program *p)
     if ((p->words.given & shared) != 0) {
         const char letter = first_given(p, shared);
 
-        return report_error_letter(p, TAKT_ERROR_WORD_SHARED, letter, 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_SHARED, letter, 0.0);
     }
     if ((p->words.given & ~used) != 0) {
         const char letter = first_given(p, ~used);
 
-        return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
     }
     return true;
 }
@@ -314,7 +316,7 @@ static void clear(struct program *p)
     p->words.names_before = p->names.count;
 }
 
-bool words_read(struct program *p)
+bool takt_words_read(struct program *p)
 {
     clear(p);
     if (!skip_line_number(p)) {
@@ -332,8 +334,8 @@ static bool swap_named(struct program *p, struct program_assignment *a)
 {
     const char *name = p->lexer.text + a->reference.span.begin;
     const size_t length = (size_t)(a->reference.span.end - a->reference.span.begin);
-    const int known = names_find(&p->names, name, length);
-    double *place = known >= 0 ? &p->names.value[known] : names_add(p, name, length);
+    const int known = takt_names_find(&p->names, name, length);
+    double *place = known >= 0 ? &p->names.value[known] : takt_names_add(p, name, length);
 
     if (place == NULL) {
         return false;
@@ -347,9 +349,9 @@ static bool swap_named(struct program *p, struct program_assignment *a)
 
 static bool swap_numbered(struct program *p, struct program_assignment *a)
 {
-    const double old = parameters_get(p->config.parameters, a->reference.number);
+    const double old = takt_parameters_get(p->config.parameters, a->reference.number);
 
-    if (!parameters_set(p->config.parameters, a->reference.number, a->value)) {
+    if (!takt_parameters_set(p->config.parameters, a->reference.number, a->value)) {
         return false;
     }
     a->value = old;
@@ -361,7 +363,7 @@ static bool swap(struct program *p, struct program_assignment *a)
     return a->reference.number == 0 ? swap_named(p, a) : swap_numbered(p, a);
 }
 
-bool words_assign(struct program *p)
+bool takt_words_assign(struct program *p)
 {
     struct program_words *w = &p->words;
 
@@ -370,14 +372,14 @@ bool words_assign(struct program *p)
             const struct program_span span = w->assignment[i].reference.span;
 
             w->assignments = i;
-            words_take_back(p);
-            return report_error(p, TAKT_ERROR_PARAMETERS_FULL, span, 0.0);
+            takt_words_take_back(p);
+            return takt_report_error(p, TAKT_ERROR_PARAMETERS_FULL, span, 0.0);
         }
     }
     return true;
 }
 
-bool words_store(struct program *p, enum step step, unsigned number, double value)
+bool takt_words_store(struct program *p, enum step step, unsigned number, double value)
 {
     struct program_words *w = &p->words;
 
@@ -387,13 +389,13 @@ bool words_store(struct program *p, enum step step, unsigned number, double valu
     a->reference.number = (uint16_t)number;
     a->value = value;
     if (!swap_numbered(p, a)) {
-        return report_error_code(p, TAKT_ERROR_PARAMETERS_FULL, step, 0.0);
+        return takt_report_error_code(p, TAKT_ERROR_PARAMETERS_FULL, step, 0.0);
     }
     w->assignments++;
     return true;
 }
 
-void words_take_back(struct program *p)
+void takt_words_take_back(struct program *p)
 {
     for (unsigned i = p->words.assignments; i > 0; i--) {
         (void)swap(p, &p->words.assignment[i - 1]);
@@ -402,16 +404,16 @@ void words_take_back(struct program *p)
     p->names.count = p->words.names_before;
 }
 
-bool words_whole(struct program *p, char letter, double low, double high, uint32_t *whole)
+bool takt_words_whole(struct program *p, char letter, double low, double high, uint32_t *whole)
 {
     const double value = words_value(p, letter);
     double nearest;
 
-    if (!expression_whole(value, &nearest)) {
-        return report_error_letter(p, TAKT_ERROR_WORD_NOT_WHOLE, letter, value);
+    if (!takt_expression_whole(value, &nearest)) {
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_NOT_WHOLE, letter, value);
     }
     if (nearest < low || nearest > high) {
-        return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, letter, value);
+        return takt_report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, letter, value);
     }
     *whole = (uint32_t)nearest;
     return true;

@@ -8,18 +8,18 @@
 #include "program/program.h"
 
 /* Reads the words of the current line and checks that they fit together. False: p->error is set. */
-bool words_read(struct program *p);
+bool takt_words_read(struct program *p);
 
 /*
  * Gives the parameters assigned on the line their new values. The old ones are kept in their place until the next
- * line, so that words_take_back can undo it. False: no room, p->error is set, nothing is changed.
+ * line, so that takt_words_take_back can undo it. False: no room, p->error is set, nothing is changed.
  */
-bool words_assign(struct program *p);
+bool takt_words_assign(struct program *p);
 
-/* Sets a parameter because the code of a step says so; words_take_back undoes this too. */
-bool words_store(struct program *p, enum step step, unsigned number, double value);
+/* Sets a parameter because the code of a step says so; takt_words_take_back undoes this too. */
+bool takt_words_store(struct program *p, enum step step, unsigned number, double value);
 
-void words_take_back(struct program *p);
+void takt_words_take_back(struct program *p);
 
 static inline bool words_has(const struct program *p, char letter)
 {
@@ -37,6 +37,6 @@ static inline bool words_has_step(const struct program *p, enum step step)
 }
 
 /* The value of a letter that must be a whole number from low to high. False: p->error is set. */
-bool words_whole(struct program *p, char letter, double low, double high, uint32_t *whole);
+bool takt_words_whole(struct program *p, char letter, double low, double high, uint32_t *whole);
 
 #endif

@@ -18,10 +18,10 @@ static enum takt_error error_of(enum replay_fault fault)
     return TAKT_ERROR_PLAN_DAMAGED;
 }
 
-bool replay_fit_read(struct replay_header *h, const uint8_t bytes[REPLAY_HEADER_BYTES],
-                     struct diagnostic *why)
+bool takt_replay_fit_read(struct replay_header *h, const uint8_t bytes[REPLAY_HEADER_BYTES],
+                          struct diagnostic *why)
 {
-    diagnostic_set(why, error_of(replay_header_read(h, bytes)), 0, 0, "", 0, 0.0);
+    takt_diagnostic_set(why, error_of(takt_replay_header_read(h, bytes)), 0, 0, "", 0, 0.0);
     return why->code == TAKT_OK;
 }
 
@@ -31,8 +31,8 @@ static bool is_same(const char *name, size_t length, double there, double here,
     if (there == here) {
         return true;
     }
-    diagnostic_set(why, TAKT_ERROR_PLAN_MACHINE, 0, 0, name, length, there);
-    diagnostic_set_limit(why, here);
+    takt_diagnostic_set(why, TAKT_ERROR_PLAN_MACHINE, 0, 0, name, length, there);
+    takt_diagnostic_set_limit(why, here);
     return false;
 }
 
@@ -48,8 +48,8 @@ static bool is_same_limit(const char *what, int axis, double there, double here,
     return is_same(name, length, there, here, why);
 }
 
-bool replay_fit_machine(const struct replay_header *h, const struct replay_fit *here,
-                        struct diagnostic *why)
+bool takt_replay_fit_machine(const struct replay_header *h, const struct replay_fit *here,
+                             struct diagnostic *why)
 {
     static const char cycle[] = "the cycle in us";
     const struct plan_limits *l = &here->limits;
@@ -70,12 +70,12 @@ bool replay_fit_machine(const struct replay_header *h, const struct replay_fit *
     return true;
 }
 
-bool replay_fit_text(const struct replay_header *h, const struct replay_fit *here,
-                     struct diagnostic *why)
+bool takt_replay_fit_text(const struct replay_header *h, const struct replay_fit *here,
+                          struct diagnostic *why)
 {
     if (h->text_size == here->text_size && h->text_crc == here->text_crc) {
         return true;
     }
-    diagnostic_set(why, TAKT_ERROR_PLAN_PROGRAM, 0, 0, "", 0, 0.0);
+    takt_diagnostic_set(why, TAKT_ERROR_PLAN_PROGRAM, 0, 0, "", 0, 0.0);
     return false;
 }

@@ -18,13 +18,13 @@ struct replay_fit {
 };
 
 /* The header's bytes: false after saying in *why what is wrong with them. */
-bool replay_fit_read(struct replay_header *h, const uint8_t bytes[REPLAY_HEADER_BYTES],
-                     struct diagnostic *why);
+bool takt_replay_fit_read(struct replay_header *h, const uint8_t bytes[REPLAY_HEADER_BYTES],
+                          struct diagnostic *why);
 
 /* False: *why says what differs. */
-bool replay_fit_machine(const struct replay_header *h, const struct replay_fit *here,
-                        struct diagnostic *why);
-bool replay_fit_text(const struct replay_header *h, const struct replay_fit *here,
-                     struct diagnostic *why);
+bool takt_replay_fit_machine(const struct replay_header *h, const struct replay_fit *here,
+                             struct diagnostic *why);
+bool takt_replay_fit_text(const struct replay_header *h, const struct replay_fit *here,
+                          struct diagnostic *why);
 
 #endif

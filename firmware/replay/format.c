@@ -29,14 +29,14 @@ enum {
 #define CEILING_MIN      100
 #define CEILING_MAX      120
 
-void replay_put(uint8_t *bytes, uint64_t value, unsigned size)
+void takt_replay_put(uint8_t *bytes, uint64_t value, unsigned size)
 {
     for (unsigned i = 0; i < size; i++) {
         bytes[i] = (uint8_t)(value >> (8 * i));
     }
 }
 
-uint64_t replay_get(const uint8_t *bytes, unsigned size)
+uint64_t takt_replay_get(const uint8_t *bytes, unsigned size)
 {
     uint64_t value = 0;
 
@@ -46,7 +46,7 @@ uint64_t replay_get(const uint8_t *bytes, unsigned size)
     return value;
 }
 
-void replay_put_bits(struct replay_bits *b, unsigned value, unsigned count)
+void takt_replay_put_bits(struct replay_bits *b, unsigned value, unsigned count)
 {
     for (unsigned i = 0; i < count; i++, b->at++) {
         if (b->at / 8 < b->size) {
@@ -55,7 +55,7 @@ void replay_put_bits(struct replay_bits *b, unsigned value, unsigned count)
     }
 }
 
-unsigned replay_get_bits(struct replay_bits *b, unsigned count)
+unsigned takt_replay_get_bits(struct replay_bits *b, unsigned count)
 {
     unsigned value = 0;
 
@@ -72,40 +72,40 @@ static void put_double(uint8_t *bytes, double value)
     uint64_t bits;
 
     memcpy(&bits, &value, sizeof(bits));
-    replay_put(bytes, bits, 8);
+    takt_replay_put(bytes, bits, 8);
 }
 
 static double get_double(const uint8_t *bytes)
 {
-    const uint64_t bits = replay_get(bytes, 8);
+    const uint64_t bits = takt_replay_get(bytes, 8);
     double value;
 
     memcpy(&value, &bits, sizeof(value));
     return value;
 }
 
-void replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEADER_BYTES])
+void takt_replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEADER_BYTES])
 {
     memset(bytes, 0, REPLAY_HEADER_BYTES);
     memcpy(bytes, magic, sizeof(magic));
-    replay_put(bytes + AT_VERSION, REPLAY_VERSION, 4);
-    replay_put(bytes + AT_CYCLE, h->cycle_us, 4);
-    replay_put(bytes + AT_STEP, h->step_cycles, 4);
-    replay_put(bytes + AT_QUANTUM, h->quantum_bits, 4);
-    replay_put(bytes + AT_CEILING, h->ceiling_percent, 4);
-    replay_put(bytes + AT_BLOCKS, h->blocks, 4);
-    replay_put(bytes + AT_SECTIONS, h->sections, 4);
-    replay_put(bytes + AT_INTERVALS, h->intervals, 8);
-    replay_put(bytes + AT_PROGRAM, h->program, 8);
-    replay_put(bytes + AT_TEXT_SIZE, h->text_size, 4);
-    replay_put(bytes + AT_TEXT_CRC, h->text_crc, 4);
+    takt_replay_put(bytes + AT_VERSION, REPLAY_VERSION, 4);
+    takt_replay_put(bytes + AT_CYCLE, h->cycle_us, 4);
+    takt_replay_put(bytes + AT_STEP, h->step_cycles, 4);
+    takt_replay_put(bytes + AT_QUANTUM, h->quantum_bits, 4);
+    takt_replay_put(bytes + AT_CEILING, h->ceiling_percent, 4);
+    takt_replay_put(bytes + AT_BLOCKS, h->blocks, 4);
+    takt_replay_put(bytes + AT_SECTIONS, h->sections, 4);
+    takt_replay_put(bytes + AT_INTERVALS, h->intervals, 8);
+    takt_replay_put(bytes + AT_PROGRAM, h->program, 8);
+    takt_replay_put(bytes + AT_TEXT_SIZE, h->text_size, 4);
+    takt_replay_put(bytes + AT_TEXT_CRC, h->text_crc, 4);
     put_double(bytes + AT_KEPT, h->kept);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i, h->velocity_mm_s[i]);
         put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i + 8, h->acceleration_mm_s2[i]);
         put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i + 16, h->jerk_mm_s3[i]);
     }
-    replay_put(bytes + AT_CRC, crc32_add(CRC32_START, bytes, AT_CRC), 4);
+    takt_replay_put(bytes + AT_CRC, takt_crc32_add(CRC32_START, bytes, AT_CRC), 4);
 }
 
 static bool is_sound(const struct replay_header *h)
@@ -115,29 +115,29 @@ static bool is_sound(const struct replay_header *h)
            h->kept > 0.0 && h->kept < 1.0;
 }
 
-enum replay_fault replay_header_read(struct replay_header *h,
-                                     const uint8_t bytes[REPLAY_HEADER_BYTES])
+enum replay_fault takt_replay_header_read(struct replay_header *h,
+                                          const uint8_t bytes[REPLAY_HEADER_BYTES])
 {
     memset(h, 0, sizeof(*h));
     if (memcmp(bytes, magic, sizeof(magic)) != 0) {
         return REPLAY_FOREIGN;
     }
-    if (replay_get(bytes + AT_VERSION, 4) != REPLAY_VERSION) {
+    if (takt_replay_get(bytes + AT_VERSION, 4) != REPLAY_VERSION) {
         return REPLAY_OTHER_VERSION;
     }
-    if (replay_get(bytes + AT_CRC, 4) != crc32_add(CRC32_START, bytes, AT_CRC)) {
+    if (takt_replay_get(bytes + AT_CRC, 4) != takt_crc32_add(CRC32_START, bytes, AT_CRC)) {
         return REPLAY_DAMAGED;
     }
-    h->cycle_us = (uint32_t)replay_get(bytes + AT_CYCLE, 4);
-    h->step_cycles = (uint32_t)replay_get(bytes + AT_STEP, 4);
-    h->quantum_bits = (uint32_t)replay_get(bytes + AT_QUANTUM, 4);
-    h->ceiling_percent = (uint32_t)replay_get(bytes + AT_CEILING, 4);
-    h->blocks = (uint32_t)replay_get(bytes + AT_BLOCKS, 4);
-    h->sections = (uint32_t)replay_get(bytes + AT_SECTIONS, 4);
-    h->intervals = replay_get(bytes + AT_INTERVALS, 8);
-    h->program = replay_get(bytes + AT_PROGRAM, 8);
-    h->text_size = (uint32_t)replay_get(bytes + AT_TEXT_SIZE, 4);
-    h->text_crc = (uint32_t)replay_get(bytes + AT_TEXT_CRC, 4);
+    h->cycle_us = (uint32_t)takt_replay_get(bytes + AT_CYCLE, 4);
+    h->step_cycles = (uint32_t)takt_replay_get(bytes + AT_STEP, 4);
+    h->quantum_bits = (uint32_t)takt_replay_get(bytes + AT_QUANTUM, 4);
+    h->ceiling_percent = (uint32_t)takt_replay_get(bytes + AT_CEILING, 4);
+    h->blocks = (uint32_t)takt_replay_get(bytes + AT_BLOCKS, 4);
+    h->sections = (uint32_t)takt_replay_get(bytes + AT_SECTIONS, 4);
+    h->intervals = takt_replay_get(bytes + AT_INTERVALS, 8);
+    h->program = takt_replay_get(bytes + AT_PROGRAM, 8);
+    h->text_size = (uint32_t)takt_replay_get(bytes + AT_TEXT_SIZE, 4);
+    h->text_crc = (uint32_t)takt_replay_get(bytes + AT_TEXT_CRC, 4);
     h->kept = get_double(bytes + AT_KEPT);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         h->velocity_mm_s[i] = get_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i);

@@ -52,7 +52,7 @@
 
 #define REPLAY_RICE_BITS 3
 
-/* So many ends in an interval are told no more closely. */
+/* From this number of ends in an interval on only their number is told. */
 #define REPLAY_ENDS_CROWD 8
 
 #define REPLAY_SECTION_BYTES 36
@@ -84,9 +84,9 @@ enum replay_fault {
     REPLAY_DAMAGED
 };
 
-void replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEADER_BYTES]);
-enum replay_fault replay_header_read(struct replay_header *h,
-                                     const uint8_t bytes[REPLAY_HEADER_BYTES]);
+void takt_replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEADER_BYTES]);
+enum replay_fault takt_replay_header_read(struct replay_header *h,
+                                          const uint8_t bytes[REPLAY_HEADER_BYTES]);
 
 /* Bits in bytes. What is beyond the end reads as 0, and is not written. */
 struct replay_bits {
@@ -95,11 +95,11 @@ struct replay_bits {
     size_t at; /* bit, may be beyond the end */
 };
 
-void replay_put_bits(struct replay_bits *b, unsigned value, unsigned count);
-unsigned replay_get_bits(struct replay_bits *b, unsigned count);
+void takt_replay_put_bits(struct replay_bits *b, unsigned value, unsigned count);
+unsigned takt_replay_get_bits(struct replay_bits *b, unsigned count);
 
-/* Numbers of so many bytes. */
-void replay_put(uint8_t *bytes, uint64_t value, unsigned size);
-uint64_t replay_get(const uint8_t *bytes, unsigned size);
+/* Numbers of size bytes. */
+void takt_replay_put(uint8_t *bytes, uint64_t value, unsigned size);
+uint64_t takt_replay_get(const uint8_t *bytes, unsigned size);
 
 #endif

@@ -26,13 +26,13 @@ static double bend_max(const struct rate *r)
     return r->limits.room * (1.0 - r->limits.kept * HALT_RATE * HALT_RATE * HALT_RATE);
 }
 
-bool halt_is_possible(const struct rate *r)
+bool takt_halt_is_possible(const struct rate *r)
 {
     return r->now <= HALT_RATE && maths_abs(r->change) <= change_max(r) &&
            (r->change >= 0.0 || r->now >= 0.5 * r->change * r->change / (WAY_BEND * bend_max(r)));
 }
 
-double halt_way(const struct rate *r)
+double takt_halt_way(const struct rate *r)
 {
     const double m = WAY_BEND * bend_max(r);
     const double t = r->change / m;
@@ -59,13 +59,13 @@ static bool fits(const struct rate *r, double bend, double way)
     struct rate next = *r;
     const double here = bend_by(&next, bend);
 
-    return here + halt_way(&next) <= way;
+    return here + takt_halt_way(&next) <= way;
 }
 
 /* The largest bend up to most from which the rest of the way is enough; no less than braking to the rate 0 needs. */
 static double find_bend(const struct rate *r, double most, double way)
 {
-    double low = rate_bend(r, 0.0, bend_max(r), change_max(r));
+    double low = takt_rate_bend(r, 0.0, bend_max(r), change_max(r));
     double high = most;
 
     if (high <= low || fits(r, high, way)) {
@@ -89,10 +89,10 @@ static bool settles(struct rate *r, double to, double way, double *here)
     const double m = bend_max(r);
     struct rate next = *r;
 
-    rate_set(&next, to);
+    takt_rate_set(&next, to);
     *here = 0.5 * (r->now + to);
     if (maths_abs(to - r->now) > 0.5 * m || maths_abs(r->change) > m ||
-        *here + halt_way(&next) > way) {
+        *here + takt_halt_way(&next) > way) {
         return false;
     }
     *r = next;
@@ -156,8 +156,8 @@ static bool is_good(const struct halt_curve *l, const struct rate *r, double n)
 static double hop_cycles(const struct rate *r, double to, double way)
 {
     const double by_change = maths_sqrt(5.7735027 * way / change_max(r));
-    const double n = maths_ceil(
-        maths_max(maths_max(maths_cbrt(60.0 * way / bend_max(r)), by_change), 1.875 * way / to));
+    const double n = takt_maths_ceil(maths_max(
+        maths_max(takt_maths_cbrt(60.0 * way / bend_max(r)), by_change), 1.875 * way / to));
 
     return n <= HOP_MAX ? maths_max(n, 1.0) : 0.0;
 }
@@ -166,7 +166,7 @@ static double hop_cycles(const struct rate *r, double to, double way)
 static double brake_cycles(const struct rate *r, double way)
 {
     const double n =
-        r->change < 0.0 && r->now > 0.0 ? maths_ceil(3.0 * way / r->now) : LANDING_MAX + 1.0;
+        r->change < 0.0 && r->now > 0.0 ? takt_maths_ceil(3.0 * way / r->now) : LANDING_MAX + 1.0;
 
     if (n > LANDING_MAX) {
         return 0.0;
@@ -206,13 +206,13 @@ static double land(struct halt *h, struct rate *r, double way)
 
     h->cycles -= 1.0;
     if (h->cycles < 1.0) {
-        rate_set(r, 0.0);
+        takt_rate_set(r, 0.0);
         return way;
     }
     return maths_min(curve_at(&l, r, 1.0), way);
 }
 
-double halt_step(struct halt *h, struct rate *r, double to, double way)
+double takt_halt_step(struct halt *h, struct rate *r, double to, double way)
 {
     double here;
 
@@ -222,5 +222,5 @@ double halt_step(struct halt *h, struct rate *r, double to, double way)
     if (settles(r, to, way, &here)) {
         return here;
     }
-    return bend_by(r, find_bend(r, rate_bend(r, to, bend_max(r), change_max(r)), way));
+    return bend_by(r, find_bend(r, takt_rate_bend(r, to, bend_max(r), change_max(r)), way));
 }

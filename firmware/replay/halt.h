@@ -20,11 +20,11 @@
 /* The highest rate from which a place is braked for. */
 #define HALT_RATE 0.75
 
-/* Is the rate low and even enough to brake for a place? If not, rate_step to HALT_RATE or less makes it so. */
-bool halt_is_possible(const struct rate *r);
+/* Is the rate low and even enough to brake for a place? If not, takt_rate_step to HALT_RATE or less makes it so. */
+bool takt_halt_is_possible(const struct rate *r);
 
-/* The way to rest, in cycles of the curve; with halt_is_possible. */
-double halt_way(const struct rate *r);
+/* The way to rest, in cycles of the curve; with takt_halt_is_possible. */
+double takt_halt_way(const struct rate *r);
 
 /* A halt that is being come to. All 0: begins. */
 struct halt {
@@ -33,9 +33,9 @@ struct halt {
 
 /*
  * One cycle towards the rate to, 0 ... HALT_RATE, so that it comes to rest no later than at the end of the way, finite; with
- * halt_way(r) <= way. Returns how far it leads, way itself when it has come to rest there. Where the end is near it is
+ * takt_halt_way(r) <= way. Returns how far it leads, way itself when it has come to rest there. Where the end is near it is
  * driven to whatever is ordered.
  */
-double halt_step(struct halt *h, struct rate *r, double to, double way);
+double takt_halt_step(struct halt *h, struct rate *r, double to, double way);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-void intake_open(struct intake *s, const struct replay_source *source)
+void takt_intake_open(struct intake *s, const struct replay_source *source)
 {
     memset(s, 0, sizeof(*s));
     s->source = *source;
@@ -31,7 +31,7 @@ static bool read_header(struct intake *s)
     if (!has(s, REPLAY_HEADER_BYTES)) {
         return false;
     }
-    s->fault = replay_header_read(&s->header, s->bytes);
+    s->fault = takt_replay_header_read(&s->header, s->bytes);
     s->length = 0;
     s->has_header = s->fault == REPLAY_GOOD;
     return s->has_header;
@@ -45,11 +45,11 @@ static void take_section(struct intake *s, const uint8_t *bytes, size_t length)
         damaged(s);
         return;
     }
-    section->first_block = (uint32_t)replay_get(bytes, 4);
-    section->blocks = (uint32_t)replay_get(bytes + 4, 4);
-    section->intervals = (uint32_t)replay_get(bytes + 8, 4);
+    section->first_block = (uint32_t)takt_replay_get(bytes, 4);
+    section->blocks = (uint32_t)takt_replay_get(bytes + 4, 4);
+    section->intervals = (uint32_t)takt_replay_get(bytes + 8, 4);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        section->start[i] = (int64_t)replay_get(bytes + 12 + (size_t)8 * (size_t)i, 8);
+        section->start[i] = (int64_t)takt_replay_get(bytes + 12 + (size_t)8 * (size_t)i, 8);
     }
     s->intervals += section->intervals;
     s->place = 0;
@@ -68,7 +68,7 @@ static void take_end(struct intake *s, uint64_t place)
 /* The part of an interval, from 1, that bits tell. */
 static unsigned get_part(struct replay_bits *b, unsigned bits)
 {
-    return (replay_get_bits(b, bits) + 1U) << (REPLAY_END_BITS - bits);
+    return (takt_replay_get_bits(b, bits) + 1U) << (REPLAY_END_BITS - bits);
 }
 
 /* How many blocks end in an interval: no more than a record holds, or the record is damaged. */
@@ -76,10 +76,10 @@ static unsigned get_count(struct replay_bits *b, unsigned k)
 {
     unsigned high = 0;
 
-    while (high <= REPLAY_RECORD_ENDS && replay_get_bits(b, 1) == 1U) {
+    while (high <= REPLAY_RECORD_ENDS && takt_replay_get_bits(b, 1) == 1U) {
         high++;
     }
-    return (high << k) + replay_get_bits(b, k);
+    return (high << k) + takt_replay_get_bits(b, k);
 }
 
 /* count ends, the last in a part of the interval that is coming, evenly. */
@@ -107,7 +107,7 @@ static void take_interval_ends(struct intake *s, struct replay_bits *b, unsigned
 /* The ends of all intervals of a record. */
 static void take_ends(struct intake *s, struct replay_bits *b, unsigned intervals)
 {
-    const unsigned k = replay_get_bits(b, REPLAY_RICE_BITS);
+    const unsigned k = takt_replay_get_bits(b, REPLAY_RICE_BITS);
     unsigned left = REPLAY_RECORD_ENDS;
 
     for (unsigned i = 0; i < intervals; i++) {
@@ -131,7 +131,7 @@ static void take_third(struct intake *s, const uint8_t *bytes)
     int16_t *third = s->third[s->intervals_came % INTAKE_INTERVALS_MAX];
 
     for (unsigned axis = 0; axis < AXIS_LINEAR_COUNT; axis++) {
-        third[axis] = (int16_t)(uint16_t)replay_get(bytes + (size_t)2 * axis, 2);
+        third[axis] = (int16_t)(uint16_t)takt_replay_get(bytes + (size_t)2 * axis, 2);
     }
     handoff_set_count(&s->intervals_came, s->intervals_came + 1U);
 }
@@ -190,7 +190,7 @@ static void take_record(struct intake *s, size_t length)
     }
 }
 
-bool intake_has_room(const struct intake *s)
+bool takt_intake_has_room(const struct intake *s)
 {
     return s->intervals_came - s->intervals_taken + REPLAY_RECORD_INTERVALS <=
                INTAKE_INTERVALS_MAX &&
@@ -203,10 +203,10 @@ static bool read_record(struct intake *s)
     size_t length;
     size_t whole;
 
-    if (!intake_has_room(s) || !has(s, REPLAY_RECORD_HEAD)) {
+    if (!takt_intake_has_room(s) || !has(s, REPLAY_RECORD_HEAD)) {
         return false;
     }
-    length = (size_t)replay_get(s->bytes + 1, 2);
+    length = (size_t)takt_replay_get(s->bytes + 1, 2);
     whole = REPLAY_RECORD_HEAD + length;
     if (whole + REPLAY_RECORD_TAIL > REPLAY_RECORD_MAX) {
         damaged(s);
@@ -215,8 +215,8 @@ static bool read_record(struct intake *s)
     if (!has(s, whole + REPLAY_RECORD_TAIL)) {
         return false;
     }
-    s->crc = crc32_add(s->crc, s->bytes, whole);
-    if (s->crc != (uint32_t)replay_get(s->bytes + whole, REPLAY_RECORD_TAIL)) {
+    s->crc = takt_crc32_add(s->crc, s->bytes, whole);
+    if (s->crc != (uint32_t)takt_replay_get(s->bytes + whole, REPLAY_RECORD_TAIL)) {
         damaged(s);
         return false;
     }
@@ -225,7 +225,7 @@ static bool read_record(struct intake *s)
     return s->fault == REPLAY_GOOD;
 }
 
-void intake_read(struct intake *s)
+void takt_intake_read(struct intake *s)
 {
     if (s->fault != REPLAY_GOOD || (!s->has_header && !read_header(s))) {
         return;

@@ -53,12 +53,12 @@ struct intake {
     struct intake_section section[INTAKE_SECTIONS_MAX];
 };
 
-void intake_open(struct intake *s, const struct replay_source *source);
+void takt_intake_open(struct intake *s, const struct replay_source *source);
 
 /* Is there room for whatever the next record holds? */
-bool intake_has_room(const struct intake *s);
+bool takt_intake_has_room(const struct intake *s);
 
 /* Background: reads what has come, as far as there is room. */
-void intake_read(struct intake *s);
+void takt_intake_read(struct intake *s);
 
 #endif

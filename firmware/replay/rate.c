@@ -14,7 +14,7 @@
 /* Steps of the search for the rate from which braking is possible. */
 #define HIGHEST_HALVINGS 20
 
-void rate_init(struct rate *r, const struct plan_limits *limits, double kept)
+void takt_rate_init(struct rate *r, const struct plan_limits *limits, double kept)
 {
     struct rate_limits *l = &r->limits;
 
@@ -35,7 +35,7 @@ void rate_init(struct rate *r, const struct plan_limits *limits, double kept)
     }
 }
 
-void rate_set(struct rate *r, double to)
+void takt_rate_set(struct rate *r, double to)
 {
     r->now = to;
     r->change = 0.0;
@@ -69,12 +69,12 @@ static double bend_towards(const struct rate *r, double to, double room, double 
     return maths_clamp(sign * wanted - r->change, -room, room);
 }
 
-double rate_bend(const struct rate *r, double to, double room, double most)
+double takt_rate_bend(const struct rate *r, double to, double room, double most)
 {
     return bend_towards(r, to, room, room, most);
 }
 
-double rate_step(struct rate *r, double to)
+double takt_rate_step(struct rate *r, double to)
 {
     const struct rate_limits *l = &r->limits;
     const double high =
@@ -101,20 +101,20 @@ static double brake_cycles_from(const struct rate *r, double rate)
 {
     const double k = r->limits.kept;
 
-    return -maths_ln(1.0 - k * rate * rate) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
+    return -takt_maths_ln(1.0 - k * rate * rate) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
 }
 
-double rate_brake_cycles(const struct rate *r)
+double takt_rate_brake_cycles(const struct rate *r)
 {
     return brake_cycles_from(r, 1.0);
 }
 
-double rate_highest(const struct rate *r, double cycles)
+double takt_rate_highest(const struct rate *r, double cycles)
 {
     double low = 0.0;
     double high = 1.0;
 
-    if (rate_brake_cycles(r) <= cycles) {
+    if (takt_rate_brake_cycles(r) <= cycles) {
         return 1.0;
     }
     for (int i = 0; i < HIGHEST_HALVINGS; i++) {

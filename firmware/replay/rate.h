@@ -38,22 +38,22 @@ struct rate {
 };
 
 /* kept: the part of acceleration and jerk that the curve uses at most, < 1. */
-void rate_init(struct rate *r, const struct plan_limits *limits, double kept);
+void takt_rate_init(struct rate *r, const struct plan_limits *limits, double kept);
 
 /* The axes stand where nothing of the curve moves: the rate may be anything at once. */
-void rate_set(struct rate *r, double to);
+void takt_rate_set(struct rate *r, double to);
 
 /* One cycle towards the rate to, 0 ... 1. Returns how far on the curve it leads, in cycles of the curve. */
-double rate_step(struct rate *r, double to);
+double takt_rate_step(struct rate *r, double to);
 
 /* How much the change changes in a cycle on the way to the rate to: by room at most, and to a change of most at most. */
-double rate_bend(const struct rate *r, double to, double room, double most);
+double takt_rate_bend(const struct rate *r, double to, double room, double most);
 
 /* How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most. */
-double rate_brake_cycles(const struct rate *r);
+double takt_rate_brake_cycles(const struct rate *r);
 
-/* The highest rate, up to 1, from which it comes to rest within so many cycles of the curve, 500 or more. */
-double rate_highest(const struct rate *r, double cycles);
+/* The highest rate, up to 1, from which it comes to rest within this many cycles of the curve, 500 or more. */
+double takt_rate_highest(const struct rate *r, double cycles);
 
 /* Does it stand? */
 static inline bool rate_rests(const struct rate *r)

@@ -11,11 +11,11 @@
 /* Blocks that one cycle passes at most. */
 #define PASS_MAX 64
 
-void replay_init(struct replay *r, struct intake *intake, const struct replay_source *source)
+void takt_replay_init(struct replay *r, struct intake *intake, const struct replay_source *source)
 {
     memset(r, 0, sizeof(*r));
     r->intake = intake;
-    intake_open(r->intake, source);
+    takt_intake_open(r->intake, source);
 }
 
 static void fail(struct replay *r, enum takt_error code)
@@ -35,17 +35,18 @@ static void begin_intake(struct replay *r, const struct plan_limits *limits)
         r->quantum_mm *= 0.5;
     }
     r->step = 1.0 / (double)h->step_cycles;
-    rate_init(&r->rate, limits, h->kept);
+    takt_rate_init(&r->rate, limits, h->kept);
     r->highest = r->intake->source.is_lost != NULL
-                     ? rate_highest(&r->rate, REPLAY_BRAKE_INTERVALS_MAX / r->step)
+                     ? takt_rate_highest(&r->rate, REPLAY_BRAKE_INTERVALS_MAX / r->step)
                      : 1.0;
-    r->brake_intervals = (uint32_t)maths_min(maths_ceil(rate_brake_cycles(&r->rate) * r->step) + 2,
-                                             REPLAY_BRAKE_INTERVALS_MAX);
+    r->brake_intervals =
+        (uint32_t)maths_min(takt_maths_ceil(takt_rate_brake_cycles(&r->rate) * r->step) + 2,
+                            REPLAY_BRAKE_INTERVALS_MAX);
 }
 
-void replay_read(struct replay *r, const struct plan_limits *limits)
+void takt_replay_read(struct replay *r, const struct plan_limits *limits)
 {
-    intake_read(r->intake);
+    takt_intake_read(r->intake);
     if (r->intake->has_header && r->step == 0.0) {
         begin_intake(r, limits);
     }
@@ -55,7 +56,7 @@ void replay_read(struct replay *r, const struct plan_limits *limits)
     }
 }
 
-void replay_prepare(struct move *move)
+void takt_replay_prepare(struct move *move)
 {
     if (move_is_motion(move) && move->path == PATH_BLEND) {
         move->path = PATH_EXACT;
@@ -133,7 +134,7 @@ static bool has_begin(const struct replay *r)
     const uint32_t held = s->intervals_came - s->intervals_taken;
 
     return s->sections_came != s->sections_taken && held > 0 &&
-           (!intake_has_room(s) ||
+           (!takt_intake_has_room(s) ||
             held >= maths_min(s->section[s->sections_taken % INTAKE_SECTIONS_MAX].intervals,
                               r->brake_intervals));
 }
@@ -185,14 +186,14 @@ static double wanted_rate(const struct replay *r, const struct block *b,
     return maths_clamp(ratio / compiled, 0.0, r->highest);
 }
 
-/* Nothing must be driven that could not be come to rest on: the stream is late. */
+/* Nothing must be driven on which it could not come to rest: the stream is late. */
 static bool is_starving(const struct replay *r)
 {
     const struct intake *s = r->intake;
     const uint32_t held = s->intervals_came - s->intervals_taken;
 
     return r->taken + held < r->section.intervals && held < r->brake_intervals &&
-           intake_has_room(s);
+           takt_intake_has_room(s);
 }
 
 /* -- single block -- */
@@ -207,9 +208,9 @@ static double way_to(const struct replay *r, uint64_t end)
 static void find_stop(struct replay *r)
 {
     const struct intake *s = r->intake;
-    const double way = halt_way(&r->rate);
-    const uint64_t from =
-        (uint64_t)maths_ceil(((double)r->interval + r->part + way * r->step) * REPLAY_END_PARTS);
+    const double way = takt_halt_way(&r->rate);
+    const uint64_t from = (uint64_t)takt_maths_ceil(
+        ((double)r->interval + r->part + way * r->step) * REPLAY_END_PARTS);
     uint64_t end = r->end;
     uint32_t i = s->ends_taken;
     uint32_t left = r->section.blocks - r->blocks - 1;
@@ -232,14 +233,14 @@ static double step_to_stop(struct replay *r, double rate)
 {
     const double to = maths_min(rate, HALT_RATE);
 
-    if (r->stop == REPLAY_NO_STOP && halt_is_possible(&r->rate)) {
+    if (r->stop == REPLAY_NO_STOP && takt_halt_is_possible(&r->rate)) {
         find_stop(r);
     }
     if (r->stop != REPLAY_STOP_AHEAD) {
-        return rate_step(&r->rate, to);
+        return takt_rate_step(&r->rate, to);
     }
     const double way = maths_max(way_to(r, r->stop_end), 0.0);
-    const double here = halt_step(&r->halt, &r->rate, to, way);
+    const double here = takt_halt_step(&r->halt, &r->rate, to, way);
 
     if (here == way && rate_rests(&r->rate)) {
         r->stop = REPLAY_STOP_REACHED;
@@ -256,9 +257,9 @@ static void stand_at_stop(struct replay *r)
 /* Nothing of the curve moves where a section begins: at once at the rate, if the first stop can then be braked for. */
 static void begin_rate(struct replay *r, double rate, bool single_block)
 {
-    rate_set(&r->rate, single_block ? maths_min(rate, HALT_RATE) : rate);
-    if (single_block && r->has_end && halt_way(&r->rate) > way_to(r, r->end)) {
-        rate_set(&r->rate, 0.0);
+    takt_rate_set(&r->rate, single_block ? maths_min(rate, HALT_RATE) : rate);
+    if (single_block && r->has_end && takt_halt_way(&r->rate) > way_to(r, r->end)) {
+        takt_rate_set(&r->rate, 0.0);
     }
 }
 
@@ -269,7 +270,7 @@ static void begin_rate(struct replay *r, double rate, bool single_block)
  */
 static bool advance(struct replay *r, double rate, bool single_block)
 {
-    const double way = single_block ? step_to_stop(r, rate) : rate_step(&r->rate, rate);
+    const double way = single_block ? step_to_stop(r, rate) : takt_rate_step(&r->rate, rate);
 
     r->part += way * r->step;
     if (r->stop == REPLAY_STOP_REACHED) {
@@ -283,7 +284,7 @@ static bool advance(struct replay *r, double rate, bool single_block)
         if (r->intake->intervals_taken == r->intake->intervals_came) {
             r->interval--;
             r->part = 1.0;
-            rate_set(&r->rate, 0.0);
+            takt_rate_set(&r->rate, 0.0);
             fail(r, TAKT_ERROR_PROGRAM_STARVED);
             return false;
         }
@@ -303,7 +304,7 @@ static bool pass_pieces(struct motion *m)
         if (m->path->first + 1 == m->path->closed) {
             return false;
         }
-        handover_pass_block(m);
+        takt_handover_pass_block(m);
     }
     return false;
 }
@@ -325,7 +326,7 @@ static void pass_blocks(struct replay *r, struct motion *m, bool ended)
             m->path->first + 1 == m->path->closed) {
             break;
         }
-        handover_pass_block(m);
+        takt_handover_pass_block(m);
         r->blocks++;
         take_end(r);
     }
@@ -378,10 +379,10 @@ static void drive(struct replay *r, struct motion *m, double rate, bool single_b
     } else {
         point_at(r, &at);
     }
-    handover_add_cycle(m, &at, distance(&before, &at) / m->cycle_s, ended, record);
+    takt_handover_add_cycle(m, &at, distance(&before, &at) / m->cycle_s, ended, record);
     record->override_percent = r->rate.now * (double)r->intake->header.ceiling_percent;
     if (ended && r->alarm.code == TAKT_OK) {
-        handover_end(m);
+        takt_handover_end(m);
     }
 }
 
@@ -389,7 +390,7 @@ static void stand(struct motion *m, struct cycle_record *record)
 {
     const struct point at = m->at;
 
-    handover_add_cycle(m, &at, 0.0, false, record);
+    takt_handover_add_cycle(m, &at, 0.0, false, record);
 }
 
 /* A cycle at the end of a single block, from which the operator may go on after it has been told. */
@@ -406,7 +407,7 @@ static bool stands_at_stop(struct replay *r, struct motion *m, double rate,
         pass_blocks(r, m, false);
         return false;
     }
-    handover_add_cycle(m, &at, 0.0, r->stop == REPLAY_STOP_REACHED, record);
+    takt_handover_add_cycle(m, &at, 0.0, r->stop == REPLAY_STOP_REACHED, record);
     r->stop = REPLAY_STOP_TOLD;
     return true;
 }
@@ -417,8 +418,9 @@ static bool has_failed(const struct replay *r)
     return r->alarm.code != TAKT_OK && (!r->begun || rate_rests(&r->rate));
 }
 
-enum replay_result replay_cycle(struct replay *r, struct motion *m,
-                                const struct motion_operator *wanted, struct cycle_record *record)
+enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
+                                     const struct motion_operator *wanted,
+                                     struct cycle_record *record)
 {
     double rate = wanted_rate(r, path_first(m->path), wanted);
 
@@ -427,7 +429,7 @@ enum replay_result replay_cycle(struct replay *r, struct motion *m,
     }
     r->waits = false;
     if (!r->begun) {
-        if (wanted->wait || rate == 0.0 || !has_begin(r) || !motion_rests(m)) {
+        if (wanted->wait || rate == 0.0 || !has_begin(r) || !takt_motion_rests(m)) {
             r->waits = r->has_begun && rate > 0.0 && !has_begin(r);
             r->starved += r->waits ? 1 : 0;
             stand(m, record);

@@ -1,7 +1,7 @@
 /*
  * Replays a compiled program: setpoints out of its curve instead of out of the planner, in the same control cycle.
  *
- *     intake (background) -> sections, intervals, block ends -> replay_cycle -> setpoint
+ *     intake (background) -> sections, intervals, block ends -> takt_replay_cycle -> setpoint
  *
  * struct motion hands over every motion (motion/handover.h) and does what happens at rest itself. The place on the curve
  * moves at the rate that rate.h allows.
@@ -61,16 +61,17 @@ enum replay_result {
 };
 
 /* intake: the caller's, for as long as it replays; no matter what is in it. */
-void replay_init(struct replay *r, struct intake *intake, const struct replay_source *source);
+void takt_replay_init(struct replay *r, struct intake *intake, const struct replay_source *source);
 
 /* Background: a move as it goes onto the path, of which the blocks alone are needed, not the feed or the rounding. */
-void replay_prepare(struct move *move);
+void takt_replay_prepare(struct move *move);
 
 /* Background, as often as it likes. */
-void replay_read(struct replay *r, const struct plan_limits *limits);
+void takt_replay_read(struct replay *r, const struct plan_limits *limits);
 
-/* Instead of motion_cycle when that says MOTION_HANDED_OVER. */
-enum replay_result replay_cycle(struct replay *r, struct motion *m,
-                                const struct motion_operator *wanted, struct cycle_record *record);
+/* Instead of takt_motion_cycle when that says MOTION_HANDED_OVER. */
+enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
+                                     const struct motion_operator *wanted,
+                                     struct cycle_record *record);
 
 #endif

@@ -35,11 +35,11 @@ static void begin_job(struct service *s, enum service_job job)
 /* Lines are one session: what one sets counts for those after it, until a program or a reset ends the session. */
 static void keep_modes(struct service *s)
 {
-    s->modes = *program_get_modes(&s->controller.reader->program);
+    s->modes = *takt_program_get_modes(&s->controller.reader->program);
     s->has_modes = true;
 }
 
-struct tool *service_find_tool(const struct service *s, uint32_t number)
+struct tool *takt_service_find_tool(const struct service *s, uint32_t number)
 {
     for (size_t i = 0; i < s->config.tools_count; i++) {
         if (s->config.tools[i].number == number)
@@ -54,21 +54,21 @@ static void keep_tools(const struct service *s)
     const struct program_tools *changed = &s->controller.reader->program.tools;
 
     for (unsigned i = 0; i < changed->count; i++) {
-        struct tool *tool = service_find_tool(s, changed->tool[i].number);
+        struct tool *tool = takt_service_find_tool(s, changed->tool[i].number);
 
         if (tool != NULL)
             *tool = changed->tool[i];
     }
 }
 
-void service_end_job(struct service *s, enum panel_outcome outcome)
+void takt_service_end_job(struct service *s, enum panel_outcome outcome)
 {
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
         keep_modes(s);
     if (s->streams)
-        service_end_lines(s, outcome);
+        takt_service_end_lines(s, outcome);
     if (s->job == SERVICE_PROGRAM) {
-        service_forget_plan(s);
+        takt_service_forget_plan(s);
         s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
     }
     if (s->job != SERVICE_NOTHING) {
@@ -83,41 +83,41 @@ void service_end_job(struct service *s, enum panel_outcome outcome)
     s->settings.spindle_stop = false;
 }
 
-void service_give_up(struct service *s)
+void takt_service_give_up(struct service *s)
 {
     if (s->finds_home)
-        controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
+        takt_controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
     else if (s->job != SERVICE_NOTHING)
         s->giving_up = true;
 }
 
-enum service_plan service_open_plan(const struct service *s, struct replay_source *source)
+enum service_plan takt_service_open_plan(const struct service *s, struct replay_source *source)
 {
     const struct service_plans *plans = &s->config.plans;
 
     return plans->open != NULL ? plans->open(plans->context, source) : SERVICE_PLAN_NONE;
 }
 
-void service_forget_plan(struct service *s)
+void takt_service_forget_plan(struct service *s)
 {
     if (s->config.plans.forget != NULL)
         s->config.plans.forget(s->config.plans.context);
 }
 
-bool service_start_program(struct service *s)
+bool takt_service_start_program(struct service *s)
 {
-    struct controller_config config = service_controller_config(s);
+    struct controller_config config = takt_service_controller_config(s);
     const struct service_programs *programs = &s->config.programs;
     struct replay_source plan;
 
-    if (service_open_plan(s, &plan) == SERVICE_PLAN_READY)
+    if (takt_service_open_plan(s, &plan) == SERVICE_PLAN_READY)
         config.compiled = &plan;
     if (s->program_size == 0 || !programs->open(programs->context, &config.source))
         return false;
     config.from_line = s->settings.start_line;
     s->settings.start_line = 0;
     s->controller.record.line = 0;
-    controller_start_program(&s->controller, &config, &s->at);
+    takt_controller_start_program(&s->controller, &config, &s->at);
     s->has_modes = false;
     begin_job(s, SERVICE_PROGRAM);
     return true;
@@ -128,19 +128,19 @@ static void start_with(struct service *s, struct controller_config *config, enum
 {
     config->keeps_outputs = true;
     config->modes = s->has_modes && job == SERVICE_MDI ? &s->modes : NULL;
-    controller_start_program(&s->controller, config, &s->at);
+    takt_controller_start_program(&s->controller, config, &s->at);
     begin_job(s, job);
 }
 
 static void start_text(struct service *s, enum service_job job)
 {
-    struct controller_config config = service_controller_config(s);
+    struct controller_config config = takt_service_controller_config(s);
 
-    source_open_text(&config.source, &s->source_text, s->text, s->text_length);
+    takt_source_open_text(&config.source, &s->source_text, s->text, s->text_length);
     start_with(s, &config, job);
 }
 
-void service_start_text_of(struct service *s, const struct controller_config *config)
+void takt_service_start_text_of(struct service *s, const struct controller_config *config)
 {
     struct controller_config copy = *config;
 
@@ -159,14 +159,14 @@ static void add_text(struct service *s, const char *text)
         add_character(s, *text);
 }
 
-void service_start_mdi(struct service *s, const char *line)
+void takt_service_start_mdi(struct service *s, const char *line)
 {
     s->text_length = 0;
     add_text(s, line);
     start_text(s, SERVICE_MDI);
 }
 
-void service_start_jog_line(struct service *s, const char *line)
+void takt_service_start_jog_line(struct service *s, const char *line)
 {
     s->text_length = 0;
     add_text(s, line);
@@ -176,7 +176,7 @@ void service_start_jog_line(struct service *s, const char *line)
 static void add_word(struct service *s, char letter, double value)
 {
     char digits[DECIMAL_TEXT_MAX];
-    const size_t length = decimal_write(digits, value, JOG_PLACES);
+    const size_t length = takt_decimal_write(digits, value, JOG_PLACES);
 
     add_character(s, letter);
     for (size_t i = 0; i < length; i++)
@@ -202,7 +202,7 @@ static double jog_end(const struct service *s, bool negative)
                     : program_units(axis, axis->travel_max_mm) - JOG_ROOM;
 }
 
-bool service_jog_is_possible(const struct service *s, bool negative)
+bool takt_service_jog_is_possible(const struct service *s, bool negative)
 {
     const struct machine_axis *axis = &s->controller.machine.axis[s->settings.jog_axis];
     const double end = jog_end(s, negative);
@@ -212,7 +212,7 @@ bool service_jog_is_possible(const struct service *s, bool negative)
 }
 
 /* G53 G1: a straight line to a place of the machine, whatever offsets are in effect. */
-void service_start_jog(struct service *s, bool negative)
+void takt_service_start_jog(struct service *s, bool negative)
 {
     s->text_length = 0;
     add_text(s, "G53 G1 ");
@@ -223,7 +223,7 @@ void service_start_jog(struct service *s, bool negative)
 }
 
 /* By a line, so that it is weighed as that of a program is. */
-void service_start_setup(struct service *s)
+void takt_service_start_setup(struct service *s)
 {
     static const char letters[] = {'X', 'Y', 'Z', 'I', 'J', 'K', 'R'};
 
@@ -253,19 +253,19 @@ static bool has_home(const struct service *s)
     return false;
 }
 
-void service_start_home(struct service *s)
+void takt_service_start_home(struct service *s)
 {
     if (!has_home(s)) {
-        service_go_to_zero(s);
+        takt_service_go_to_zero(s);
         return;
     }
-    service_recover(s, true);
+    takt_service_recover(s, true);
     begin_job(s, SERVICE_HOME);
     s->finds_home = true;
 }
 
 /* Z first, so that the tool is out of the way of the others. */
-void service_go_to_zero(struct service *s)
+void takt_service_go_to_zero(struct service *s)
 {
     s->text_length = 0;
     if (s->controller.machine.axis[AXIS_Z].present)

@@ -29,14 +29,14 @@ static bool is_ahead(struct service *s)
     struct motion *motion = &s->controller.motion;
 
     return motion->has_ceiling &&
-           motion_ahead(motion) > s->controller.machine.look_ahead_blocks / 2;
+           takt_motion_ahead(motion) > s->controller.machine.look_ahead_blocks / 2;
 }
 
 /* Nothing has come. */
 static long wait(struct service *s)
 {
     if (has_passed(s, s->begun_cycle, BEGIN_S))
-        controller_begin(&s->controller);
+        takt_controller_begin(&s->controller);
     if (!has_passed(s, s->asked_cycle, QUIET_S) || is_ahead(s))
         return SOURCE_LATER;
     s->streams_to_end = true;
@@ -68,12 +68,12 @@ static bool refuse_line(void *listener, const struct diagnostic *why)
 
     lines->refuse(lines->context, why);
     return why->code != TAKT_ERROR_TRAVEL_EXCEEDED &&
-           program_get_modes(&s->controller.reader->program)->cutter_code == NULL;
+           takt_program_get_modes(&s->controller.reader->program)->cutter_code == NULL;
 }
 
-bool service_start_lines(struct service *s)
+bool takt_service_start_lines(struct service *s)
 {
-    struct controller_config config = service_controller_config(s);
+    struct controller_config config = takt_service_controller_config(s);
     const struct service_lines *lines = &s->config.lines;
 
     if (lines->open == NULL)
@@ -82,7 +82,7 @@ bool service_start_lines(struct service *s)
     config.source = (struct source){.read = read_lines, .context = s};
     config.refuse = refuse_line;
     config.listener = s;
-    service_start_text_of(s, &config);
+    takt_service_start_text_of(s, &config);
     s->streams = true;
     s->streams_to_end = s->has_line = false;
     s->asked_cycle = s->begun_cycle = s->cycles;
@@ -92,7 +92,7 @@ bool service_start_lines(struct service *s)
 /* M2, M30 or % has ended it: the next line begins as a program does. */
 static void end_as_program(struct service *s)
 {
-    controller_quieten(&s->controller);
+    takt_controller_quieten(&s->controller);
     s->has_modes = false;
 }
 
@@ -103,7 +103,7 @@ static enum takt_error cause_of(const struct service *s, enum panel_outcome outc
     return s->alarm_text.code != TAKT_OK ? s->alarm_text.code : TAKT_ERROR_ENDED;
 }
 
-void service_end_lines(struct service *s, enum panel_outcome outcome)
+void takt_service_end_lines(struct service *s, enum panel_outcome outcome)
 {
     const struct service_lines *lines = &s->config.lines;
 

@@ -18,10 +18,10 @@
 /* Rounded, and kept within what a register can say. */
 static uint32_t counts(double value, double per_unit, enum panel_id id)
 {
-    const struct panel_register *row = &panel_registers[id];
-    const double rounded = maths_round(value * per_unit);
+    const struct panel_register *row = &takt_panel_registers[id];
+    const double rounded = takt_maths_round(value * per_unit);
 
-    return (uint32_t)(int64_t)maths_clamp(rounded, (double)panel_least(row),
+    return (uint32_t)(int64_t)maths_clamp(rounded, (double)takt_panel_least(row),
                                           (double)panel_most(row));
 }
 
@@ -44,18 +44,18 @@ static void look_at_axes(const struct service *s, uint32_t *value)
     struct point actual, following;
 
     drives_get_actual(&s->controller.drives, &actual);
-    drives_get_statuswords(&s->controller.drives, statusword);
+    takt_drives_get_statuswords(&s->controller.drives, statusword);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct point *set = &s->sent[DRIVES_LATENCY_CYCLES - 1];
 
         following.at[i] = set->at[i] - actual.at[i];
         value[REGISTER_DRIVE_STATUS_X + i] = statusword[i];
     }
-    value[REGISTER_DRIVES_GIVEN_UP] = drives_get_all_given_up(&s->controller.drives);
+    value[REGISTER_DRIVES_GIVEN_UP] = takt_drives_get_all_given_up(&s->controller.drives);
     set_axes(value, REGISTER_POSITION_X, &s->at);
     set_axes(value, REGISTER_ACTUAL_X, &actual);
     set_axes(value, REGISTER_FOLLOWING_X, &following);
-    value[REGISTER_AXES] = machine_axes(&s->controller.machine);
+    value[REGISTER_AXES] = takt_machine_axes(&s->controller.machine);
 }
 
 /* The line read last may be ahead of the one being executed: linear offsets are those of the latter. */
@@ -64,13 +64,13 @@ static void look_at_work(const struct service *s, const struct block *block, str
     const struct program *p = &s->controller.reader->program;
     struct point zero, ahead;
 
-    coordinates_work_of(p, &s->at, work);
+    takt_coordinates_work_of(p, &s->at, work);
     if (block == NULL || !move_is_motion(&block->move))
         return;
     zero = s->at;
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         zero.at[i] = (double)block->move.work_mm[i] + (double)block->move.overhang_mm[i];
-    coordinates_work_of(p, &zero, &ahead);
+    takt_coordinates_work_of(p, &zero, &ahead);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         work->at[i] -= ahead.at[i];
 }
@@ -78,7 +78,7 @@ static void look_at_work(const struct service *s, const struct block *block, str
 /* Where the setpoint is on its way. */
 static void look_at_way(const struct service *s, uint32_t *value)
 {
-    const struct block *block = controller_get_block(&s->controller);
+    const struct block *block = takt_controller_get_block(&s->controller);
     const double per_min = MM_MIN_PER_MM_S / (1e-6 * (double)s->controller.machine.cycle_us);
     struct point work, left = {{0}}, feed;
 
@@ -103,7 +103,7 @@ static uint32_t motion_of(const struct program_modes *m)
 
 static void look_at_modes(const struct service *s, uint32_t *value)
 {
-    const struct program_modes *m = program_get_modes(&s->controller.reader->program);
+    const struct program_modes *m = takt_program_get_modes(&s->controller.reader->program);
 
     value[REGISTER_SYSTEM] = m->system;
     value[REGISTER_MODES] =
@@ -115,11 +115,11 @@ static void look_at_modes(const struct service *s, uint32_t *value)
 
 static unsigned homed_axes(const struct service *s)
 {
-    unsigned axes = machine_axes(&s->controller.machine);
+    unsigned axes = takt_machine_axes(&s->controller.machine);
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (s->controller.machine.axis[i].home_order != 0 &&
-            !drives_are_homed(&s->controller.drives))
+            !takt_drives_are_homed(&s->controller.drives))
             axes &= ~(1U << i);
     }
     return axes;
@@ -139,8 +139,8 @@ static enum panel_override_reason override_reason(const struct service *s,
 /* What the program does now; between programs, nothing. */
 static void look_at_motion(const struct service *s, uint32_t *value)
 {
-    const struct cycle_record *record = controller_get_record(&s->controller);
-    const struct block *block = controller_get_block(&s->controller);
+    const struct cycle_record *record = takt_controller_get_record(&s->controller);
+    const struct block *block = takt_controller_get_block(&s->controller);
     const bool moves = record != NULL;
 
     value[REGISTER_ACTIVE_LINE] = moves ? record->line : 0;
@@ -159,7 +159,7 @@ static void look_at_motion(const struct service *s, uint32_t *value)
 
 static void look_at_outputs(const struct service *s, uint32_t *value)
 {
-    const struct outputs outputs = service_get_outputs(s);
+    const struct outputs outputs = takt_service_get_outputs(s);
     const struct spindle_feedback *spindle = &s->inputs.spindle;
 
     value[REGISTER_SPINDLE_COMMANDED] =
@@ -188,7 +188,7 @@ static void look_at_health(const struct service *s, uint32_t *value)
 
 static void look_at_state(const struct service *s, uint32_t *value)
 {
-    const enum panel_state state = service_get_state(s);
+    const enum panel_state state = takt_service_get_state(s);
 
     value[REGISTER_STATE] = state;
     value[REGISTER_HOLD_REASON] = state == PANEL_HELD ? s->hold : PANEL_HOLD_NONE;
@@ -198,7 +198,7 @@ static void look_at_state(const struct service *s, uint32_t *value)
     value[REGISTER_RUNS] = s->runs;
     value[REGISTER_PROGRAM_SIZE] = s->program_size;
     value[REGISTER_PROGRAM_CRC] = s->program_crc;
-    value[REGISTER_CUT_LINE] = service_get_cut_line(s);
+    value[REGISTER_CUT_LINE] = takt_service_get_cut_line(s);
     value[REGISTER_HOMED] = homed_axes(s);
     value[REGISTER_CYCLE_START] = s->job == SERVICE_PROGRAM;
     value[REGISTER_FEED_HOLD] = s->hold != PANEL_HOLD_NONE;
@@ -241,18 +241,20 @@ static void look_at_work_offset(const struct service *s, uint32_t *value)
         PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        value[REGISTER_WORK_OFFSET_X + i] = counts(parameters_get(s->config.parameters, first + i),
-                                                   COUNTS_PER_UNIT, REGISTER_WORK_OFFSET_X);
+        value[REGISTER_WORK_OFFSET_X + i] =
+            counts(takt_parameters_get(s->config.parameters, first + i), COUNTS_PER_UNIT,
+                   REGISTER_WORK_OFFSET_X);
 }
 
 /* A tool that is not in the table has offsets 0. */
 static void look_at_tool(const struct service *s, uint32_t *value)
 {
-    const struct tool *tool = tool_table_find(&s->tools, s->settings.tool_select);
+    const struct tool *tool = takt_tool_table_find(&s->tools, s->settings.tool_select);
     const struct point none = {{0}};
     double length_mm, time_s;
 
-    correction_get_wear(&s->controller.correction, s->settings.tool_select, &length_mm, &time_s);
+    takt_correction_get_wear(&s->controller.correction, s->settings.tool_select, &length_mm,
+                             &time_s);
     value[REGISTER_TOOL_WEAR_LENGTH] = counts(length_mm, 1.0, REGISTER_TOOL_WEAR_LENGTH);
     value[REGISTER_TOOL_WEAR_TIME] = counts(time_s, 1.0, REGISTER_TOOL_WEAR_TIME);
     set_axes(value, REGISTER_TOOL_OFFSET_X, tool != NULL ? &tool->offset : &none);
@@ -265,18 +267,18 @@ static void look_at_setup(const struct service *s, uint32_t *value)
 {
     double number[CORRECTION_SETUP_VALUES];
 
-    correction_get_setup(&s->controller.correction, number);
+    takt_correction_get_setup(&s->controller.correction, number);
     for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
         const enum panel_id id = (enum panel_id)(REGISTER_SETUP_X + i);
         const double unit = i < AXIS_LINEAR_COUNT ? 1.0 : DEGREES_PER_RAD;
 
         value[id] = (s->settings.setup_given & 1U << i) != 0
                         ? (uint32_t)s->settings.setup[i]
-                        : counts(number[i] * unit, panel_counts_per_unit(id), id);
+                        : counts(number[i] * unit, takt_panel_counts_per_unit(id), id);
     }
 }
 
-void service_look(const struct service *s, struct panel_snapshot *snapshot)
+void takt_service_look(const struct service *s, struct panel_snapshot *snapshot)
 {
     memset(snapshot, 0, sizeof *snapshot);
     look_at_state(s, snapshot->value);
@@ -291,5 +293,5 @@ void service_look(const struct service *s, struct panel_snapshot *snapshot)
     look_at_tool(s, snapshot->value);
     look_at_setup(s, snapshot->value);
     if (s->alarm != PANEL_ALARM_NONE)
-        (void)diagnostic_text(&s->alarm_text, snapshot->alarm_text);
+        (void)takt_diagnostic_text(&s->alarm_text, snapshot->alarm_text);
 }

@@ -23,7 +23,7 @@ static bool is_between(enum panel_id id, enum panel_id first, enum panel_id last
 
 static struct tool *selected_tool(const struct service *s)
 {
-    return service_find_tool(s, s->settings.tool_select);
+    return takt_service_find_tool(s, s->settings.tool_select);
 }
 
 /* What stopped it must have been seen, and be gone. */
@@ -45,10 +45,11 @@ static enum panel_verdict check_start(const struct service *s)
 {
     struct replay_source plan;
 
-    if (service_get_state(s) == PANEL_HELD)
+    if (takt_service_get_state(s) == PANEL_HELD)
         return verdict_on(may_go_on(s));
     return verdict_on(s->settings.mode == PANEL_MODE_PROGRAM && s->alarm == PANEL_ALARM_NONE &&
-                      s->program_size > 0 && service_open_plan(s, &plan) != SERVICE_PLAN_UNFIT);
+                      s->program_size > 0 &&
+                      takt_service_open_plan(s, &plan) != SERVICE_PLAN_UNFIT);
 }
 
 /* A jog without a distance ends when its coil is cleared: whoever starts it must be known to be there. */
@@ -61,7 +62,7 @@ static enum panel_verdict check_jog(const struct service *s, bool negative)
         return PANEL_WRONG_STATE;
     if (s->settings.jog_distance == 0 && s->settings.watchdog_ms == 0)
         return PANEL_WRONG_STATE;
-    return service_jog_is_possible(s, negative) ? PANEL_DONE : PANEL_WRONG_VALUE;
+    return takt_service_jog_is_possible(s, negative) ? PANEL_DONE : PANEL_WRONG_VALUE;
 }
 
 /* Drives that brake are left alone until they stand. */
@@ -122,12 +123,12 @@ static enum panel_verdict check_holding(const struct service *s, enum panel_id i
 
 static enum panel_verdict check_item(const struct service *s, const struct panel_order_item *item)
 {
-    const enum panel_state state = service_get_state(s);
-    const bool is_coil = panel_registers[item->id].form == PANEL_BIT;
+    const enum panel_state state = takt_service_get_state(s);
+    const bool is_coil = takt_panel_registers[item->id].form == PANEL_BIT;
 
     if (is_coil && item->value == 0 && item->id != REGISTER_BLOCK_DELETE)
         return PANEL_DONE;
-    if (!panel_may_write(item->id, state))
+    if (!takt_panel_may_write(item->id, state))
         return PANEL_WRONG_STATE;
     return is_coil ? check_coil(s, item->id) : check_holding(s, item->id, item->value);
 }
@@ -149,25 +150,25 @@ static void reset(struct service *s)
 {
     acknowledge(s);
     s->has_modes = false;
-    service_forget_plan(s);
+    takt_service_forget_plan(s);
     if (!s->failed) {
-        service_give_up(s);
+        takt_service_give_up(s);
         return;
     }
     s->failed = false;
     if (drives_get_state(&s->controller.drives) >= DRIVES_STOPPING)
-        service_recover(s, false);
+        takt_service_recover(s, false);
     else
-        controller_drop_program(&s->controller);
+        takt_controller_drop_program(&s->controller);
 }
 
 static void set_emergency(struct service *s, bool in)
 {
     if (in && !s->emergency) {
-        controller_stop_at_once(&s->controller, TAKT_ERROR_EMERGENCY_STOP);
+        takt_controller_stop_at_once(&s->controller, TAKT_ERROR_EMERGENCY_STOP);
         acknowledge(s);
-        service_raise(s, PANEL_ALARM_EMERGENCY, controller_get_fault(&s->controller));
-        service_end_job(s, PANEL_OUTCOME_ABORTED);
+        takt_service_raise(s, PANEL_ALARM_EMERGENCY, takt_controller_get_fault(&s->controller));
+        takt_service_end_job(s, PANEL_OUTCOME_ABORTED);
         s->failed = true;
     }
     s->emergency = in;
@@ -176,10 +177,10 @@ static void set_emergency(struct service *s, bool in)
 static void jog(struct service *s, bool negative, bool on)
 {
     if (on && s->job == SERVICE_NOTHING)
-        service_start_jog(s, negative);
+        takt_service_start_jog(s, negative);
     else if (!on && s->job == SERVICE_JOG && s->jog_is_negative == negative &&
              s->settings.jog_distance == 0)
-        service_give_up(s);
+        takt_service_give_up(s);
 }
 
 static void switch_correction(struct service *s, unsigned layer, bool on)
@@ -188,8 +189,8 @@ static void switch_correction(struct service *s, unsigned layer, bool on)
 
     settings->corrections =
         on ? settings->corrections | 1U << layer : settings->corrections & ~(1U << layer);
-    correction_switch(controller_get_correction(&s->controller),
-                      (enum correction_layer_number)layer, on);
+    takt_correction_switch(takt_controller_get_correction(&s->controller),
+                           (enum correction_layer_number)layer, on);
 }
 
 /* Coils that stay as they are written. False: it is none of them. */
@@ -206,7 +207,7 @@ static bool set_switch(struct service *s, enum panel_id id, bool on)
     } else if (id == REGISTER_EMERGENCY_STOP) {
         set_emergency(s, on);
     } else if (is_between(id, REGISTER_FLOOD, REGISTER_MIST)) {
-        controller_set_coolant(&s->controller, id == REGISTER_FLOOD, on);
+        takt_controller_set_coolant(&s->controller, id == REGISTER_FLOOD, on);
     } else if (id == REGISTER_SPINDLE_STOP) {
         settings->spindle_stop = on;
     } else if (is_between(id, REGISTER_CORRECTION_MATRIX, REGISTER_CORRECTION_WEAR)) {
@@ -222,11 +223,11 @@ static bool set_switch(struct service *s, enum panel_id id, bool on)
 static bool start_text(struct service *s, const struct panel_order *order)
 {
     if (order->text == PANEL_ORDER_LINES)
-        return service_start_lines(s);
+        return takt_service_start_lines(s);
     if (order->text == PANEL_ORDER_JOG)
-        service_start_jog_line(s, order->mdi);
+        takt_service_start_jog_line(s, order->mdi);
     else
-        service_start_mdi(s, order->mdi);
+        takt_service_start_mdi(s, order->mdi);
     return true;
 }
 
@@ -236,9 +237,9 @@ static bool push_button(struct service *s, enum panel_id id, const struct panel_
     if (id == REGISTER_RESUME || (id == REGISTER_CYCLE_START && s->job != SERVICE_NOTHING))
         go_on(s);
     else if (id == REGISTER_CYCLE_START)
-        return service_start_program(s);
+        return takt_service_start_program(s);
     else if (id == REGISTER_FEED_HOLD)
-        service_hold(s, PANEL_HOLD_OPERATOR);
+        takt_service_hold(s, PANEL_HOLD_OPERATOR);
     else if (id == REGISTER_RESET)
         reset(s);
     else if (id == REGISTER_ACKNOWLEDGE)
@@ -246,9 +247,9 @@ static bool push_button(struct service *s, enum panel_id id, const struct panel_
     else if (id == REGISTER_MDI_START)
         return start_text(s, order);
     else if (id == REGISTER_HOME)
-        service_start_home(s);
+        takt_service_start_home(s);
     else if (id == REGISTER_SETUP_TAKE)
-        service_start_setup(s);
+        takt_service_start_setup(s);
     return true;
 }
 
@@ -259,7 +260,7 @@ static void load_system(struct service *s)
 
     if (p->modes.system != s->settings.work_system)
         return;
-    coordinates_load_system(p, p->modes.system);
+    takt_coordinates_load_system(p, p->modes.system);
     s->modes.system_offset = p->modes.system_offset;
 }
 
@@ -267,7 +268,8 @@ static bool set_work_offset(struct service *s, unsigned axis, int64_t value)
 {
     const unsigned number =
         PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE + axis;
-    const bool good = parameters_set(s->config.parameters, number, (double)value * UNITS_PER_COUNT);
+    const bool good =
+        takt_parameters_set(s->config.parameters, number, (double)value * UNITS_PER_COUNT);
 
     load_system(s);
     return good;
@@ -275,15 +277,15 @@ static bool set_work_offset(struct service *s, unsigned axis, int64_t value)
 
 static void set_wear(struct service *s, enum panel_id id, int64_t value)
 {
-    struct correction *correction = controller_get_correction(&s->controller);
+    struct correction *correction = takt_controller_get_correction(&s->controller);
     double length_mm, time_s;
 
-    correction_get_wear(correction, s->settings.tool_select, &length_mm, &time_s);
+    takt_correction_get_wear(correction, s->settings.tool_select, &length_mm, &time_s);
     if (id == REGISTER_TOOL_WEAR_LENGTH)
         length_mm = (double)value;
     else
         time_s = (double)value;
-    correction_set_wear(correction, s->settings.tool_select, length_mm, time_s);
+    takt_correction_set_wear(correction, s->settings.tool_select, length_mm, time_s);
 }
 
 static void set_tool_offset(struct service *s, unsigned axis, int64_t value)
@@ -335,14 +337,14 @@ static bool set_setting(struct service_settings *settings, enum panel_id id, int
 static void set_rise(struct service *s, unsigned axis, int64_t value)
 {
     s->settings.rise[axis] = (int32_t)value;
-    correction_set_rise(controller_get_correction(&s->controller), (enum axis)axis,
-                        (double)value * UNITS_PER_COUNT);
+    takt_correction_set_rise(takt_controller_get_correction(&s->controller), (enum axis)axis,
+                             (double)value * UNITS_PER_COUNT);
 }
 
 /* A plan of the program before does not fit any more. */
 static void adopt_program(struct service *s)
 {
-    service_forget_plan(s);
+    takt_service_forget_plan(s);
     s->cut_line = 0;
     s->config.programs.adopt(s->config.programs.context);
 }
@@ -374,7 +376,7 @@ static bool set_holding(struct service *s, enum panel_id id, int64_t value)
 static bool do_item(struct service *s, const struct panel_order_item *item,
                     const struct panel_order *order)
 {
-    if (panel_registers[item->id].form != PANEL_BIT)
+    if (takt_panel_registers[item->id].form != PANEL_BIT)
         return set_setting(&s->settings, item->id, item->value) ||
                set_holding(s, item->id, item->value);
     return set_switch(s, item->id, item->value != 0) || item->value == 0 ||
@@ -392,7 +394,7 @@ static bool is_ambiguous(const struct panel_order *order)
         if (order->item[i].value != 0 &&
             (is_between(id, REGISTER_CYCLE_START, REGISTER_RESUME) || id == REGISTER_RESET ||
              id == REGISTER_SETUP_TAKE || is_between(id, REGISTER_MDI_START, REGISTER_HOME)) &&
-            panel_registers[id].form == PANEL_BIT)
+            takt_panel_registers[id].form == PANEL_BIT)
             buttons++;
     }
     return buttons > 1;
@@ -411,7 +413,7 @@ static enum panel_verdict check_order(struct service *s, const struct panel_orde
     return verdict;
 }
 
-enum panel_verdict service_order(struct service *s, const struct panel_order *order)
+enum panel_verdict takt_service_order(struct service *s, const struct panel_order *order)
 {
     const struct service_settings before = s->settings;
     enum panel_verdict verdict;
@@ -428,6 +430,6 @@ enum panel_verdict service_order(struct service *s, const struct panel_order *or
             return PANEL_WRONG_STATE;
     }
     if (s->settings.watchdog_ms != before.watchdog_ms)
-        service_alive(s);
+        takt_service_alive(s);
     return PANEL_DONE;
 }

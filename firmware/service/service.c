@@ -7,14 +7,14 @@
 #include <string.h>
 
 /*
- * So many cycles without motion after a hold was asked for are rest: the first may be the last one before the hold is
+ * This many cycles without motion after a hold was asked for are rest: the first may be the last one before the hold is
  * seen, and a stretch may begin with a cycle too slow to move any axis by a bit.
  */
 #define REST_CYCLES 3
 
 #define MS_PER_US 1e-3
 
-struct controller_config service_controller_config(const struct service *s)
+struct controller_config takt_service_controller_config(const struct service *s)
 {
     return (struct controller_config){
         .machine = &s->controller.machine,
@@ -33,15 +33,15 @@ struct controller_config service_controller_config(const struct service *s)
     };
 }
 
-void service_recover(struct service *s, bool home)
+void takt_service_recover(struct service *s, bool home)
 {
-    struct controller_config config = service_controller_config(s);
+    struct controller_config config = takt_service_controller_config(s);
 
-    source_open_text(&config.source, &s->source_text, s->text, 0);
-    controller_recover(&s->controller, &config, home);
+    takt_source_open_text(&config.source, &s->source_text, s->text, 0);
+    takt_controller_recover(&s->controller, &config, home);
 }
 
-void service_init(struct service *s, const struct service_config *config)
+void takt_service_init(struct service *s, const struct service_config *config)
 {
     struct controller_config controller;
 
@@ -57,30 +57,30 @@ void service_init(struct service *s, const struct service_config *config)
         .corrections = CORRECTION_ALL_LAYERS & ~config->machine->correction.off,
     };
     s->digest = FNV_START;
-    controller = service_controller_config(s);
+    controller = takt_service_controller_config(s);
     controller.machine = config->machine;
-    source_open_text(&controller.source, &s->source_text, s->text, 0);
-    controller_init(&s->controller, &controller);
+    takt_source_open_text(&controller.source, &s->source_text, s->text, 0);
+    takt_controller_init(&s->controller, &controller);
 }
 
-void service_set_program(struct service *s, uint32_t size, uint32_t crc)
+void takt_service_set_program(struct service *s, uint32_t size, uint32_t crc)
 {
     s->program_size = size;
     s->program_crc = crc;
 }
 
-void service_set_start_line(struct service *s, uint32_t line)
+void takt_service_set_start_line(struct service *s, uint32_t line)
 {
     s->settings.start_line = line;
 }
 
-uint32_t service_get_cut_line(const struct service *s)
+uint32_t takt_service_get_cut_line(const struct service *s)
 {
     return s->job == SERVICE_PROGRAM ? s->controller.record.line : s->cut_line;
 }
 
 /* The first alarm stays until it is acknowledged: it is the cause of the others. */
-void service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text)
+void takt_service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text)
 {
     if (s->alarm != PANEL_ALARM_NONE)
         return;
@@ -89,19 +89,19 @@ void service_raise(struct service *s, enum panel_alarm alarm, const struct diagn
 }
 
 /* A jog has nothing to go on with: it is given up. Drives that look for their homes can only be stopped at once. */
-void service_hold(struct service *s, enum panel_hold reason)
+void takt_service_hold(struct service *s, enum panel_hold reason)
 {
     if (s->job == SERVICE_NOTHING)
         return;
     if (s->finds_home)
-        controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
+        takt_controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
     else if (s->job == SERVICE_JOG)
-        service_give_up(s);
+        takt_service_give_up(s);
     else if (s->hold == PANEL_HOLD_NONE || reason > PANEL_HOLD_PROGRAM)
         s->hold = reason;
 }
 
-void service_alive(struct service *s)
+void takt_service_alive(struct service *s)
 {
     s->quiet_cycles = 0;
 }
@@ -111,8 +111,8 @@ static void raise_simple(struct service *s, enum panel_alarm alarm, enum takt_er
 {
     struct diagnostic text;
 
-    diagnostic_set(&text, error, 0, 0, "", 0, value);
-    service_raise(s, alarm, &text);
+    takt_diagnostic_set(&text, error, 0, 0, "", 0, value);
+    takt_service_raise(s, alarm, &text);
 }
 
 /* Whoever has claimed control and is no longer heard has lost it, and nothing goes on without the operator. */
@@ -128,7 +128,7 @@ static void watch_panel(struct service *s)
         return;
     raise_simple(s, PANEL_ALARM_PANEL, TAKT_ERROR_PANEL_SILENT, (double)s->settings.watchdog_ms);
     s->settings.watchdog_ms = 0;
-    service_hold(s, PANEL_HOLD_PANEL);
+    takt_service_hold(s, PANEL_HOLD_PANEL);
 }
 
 /* A spindle that should turn and is lost stops the axes on their path, while they are still on it. */
@@ -136,17 +136,18 @@ static void watch_spindle(struct service *s)
 {
     const struct spindle_feedback *spindle = &s->inputs.spindle;
 
-    if (service_get_outputs(s).spindle_speed_rpm == 0.0 || (!spindle->silent && !spindle->tripped))
+    if (takt_service_get_outputs(s).spindle_speed_rpm == 0.0 ||
+        (!spindle->silent && !spindle->tripped))
         return;
     raise_simple(s, PANEL_ALARM_SPINDLE,
                  spindle->silent ? TAKT_ERROR_SPINDLE_SILENT : TAKT_ERROR_SPINDLE_TRIPPED, 0.0);
-    service_hold(s, PANEL_HOLD_SPINDLE);
+    takt_service_hold(s, PANEL_HOLD_SPINDLE);
 }
 
 /* Nothing is held: the axes go on as soon as the text does. The operator is told, once a program. */
 static void watch_text(struct service *s)
 {
-    if (s->has_starved || s->job != SERVICE_PROGRAM || !controller_is_starved(&s->controller))
+    if (s->has_starved || s->job != SERVICE_PROGRAM || !takt_controller_is_starved(&s->controller))
         return;
     s->has_starved = true;
     raise_simple(s, PANEL_ALARM_STARVED, TAKT_ERROR_PROGRAM_STARVED, 0.0);
@@ -181,17 +182,17 @@ static void count_rest(struct service *s, const struct cycle_record *record)
 
 static void add_to_digest(struct service *s, const struct cycle_record *record)
 {
-    const unsigned axes = machine_axes(&s->controller.machine);
+    const unsigned axes = takt_machine_axes(&s->controller.machine);
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if ((axes & 1U << i) != 0)
-            s->digest = fnv_add_double(s->digest, record->set.at[i]);
+            s->digest = takt_fnv_add_double(s->digest, record->set.at[i]);
     }
 }
 
 static void take_record(struct service *s)
 {
-    const struct cycle_record *record = controller_get_record(&s->controller);
+    const struct cycle_record *record = takt_controller_get_record(&s->controller);
 
     count_rest(s, record);
     for (unsigned i = DRIVES_LATENCY_CYCLES - 1; i > 0; i--)
@@ -207,39 +208,39 @@ static void take_record(struct service *s)
 /* A fault of a drive stops everything; an error of the program only the program. */
 static void take_fault(struct service *s)
 {
-    const struct diagnostic *fault = controller_get_fault(&s->controller);
+    const struct diagnostic *fault = takt_controller_get_fault(&s->controller);
     const bool drives = drives_get_state(&s->controller.drives) >= DRIVES_STOPPING;
 
     if (s->failed)
         return;
     s->failed = true;
-    service_raise(s, drives ? PANEL_ALARM_DRIVE : PANEL_ALARM_PROGRAM, fault);
-    service_end_job(s, PANEL_OUTCOME_FAILED);
-    controller_quieten(&s->controller);
+    takt_service_raise(s, drives ? PANEL_ALARM_DRIVE : PANEL_ALARM_PROGRAM, fault);
+    takt_service_end_job(s, PANEL_OUTCOME_FAILED);
+    takt_controller_quieten(&s->controller);
 }
 
-void service_lose_bus(struct service *s, unsigned bus)
+void takt_service_lose_bus(struct service *s, unsigned bus)
 {
     const char name[] = {'c', 'a', 'n', (char)('0' + bus)};
     struct diagnostic fault;
 
-    diagnostic_set(&fault, TAKT_ERROR_BUS_LOST, 0, 0, name, sizeof name, 0);
-    controller_stop_for(&s->controller, &fault);
+    takt_diagnostic_set(&fault, TAKT_ERROR_BUS_LOST, 0, 0, name, sizeof name, 0);
+    takt_controller_stop_for(&s->controller, &fault);
     take_fault(s);
 }
 
 static void follow_controller(struct service *s)
 {
-    switch (controller_get_state(&s->controller)) {
+    switch (takt_controller_get_state(&s->controller)) {
     case CONTROLLER_STARTING:
     case CONTROLLER_RUNNING:
     case CONTROLLER_STOPPING:
         break;
     case CONTROLLER_COMPLETED:
         if (s->finds_home && !s->is_planning)
-            service_go_to_zero(s);
+            takt_service_go_to_zero(s);
         else if (!s->finds_home && s->job != SERVICE_NOTHING)
-            service_end_job(s, PANEL_OUTCOME_COMPLETED);
+            takt_service_end_job(s, PANEL_OUTCOME_COMPLETED);
         break;
     case CONTROLLER_FAULTED:
         take_fault(s);
@@ -250,18 +251,18 @@ static void follow_controller(struct service *s)
 /* For a program or a line; after a hold the next block has to come first. */
 static void stop_after_block(struct service *s)
 {
-    const struct cycle_record *record = controller_get_record(&s->controller);
+    const struct cycle_record *record = takt_controller_get_record(&s->controller);
     bool optional;
 
     if (record == NULL || (s->job != SERVICE_PROGRAM && s->job != SERVICE_MDI))
         return;
-    if (controller_passed_stop(&s->controller, &optional) &&
+    if (takt_controller_passed_stop(&s->controller, &optional) &&
         (!optional || s->settings.optional_stop))
-        service_hold(s, PANEL_HOLD_PROGRAM);
-    if (s->settings.single_block && record->landed && motion_rests(&s->controller.motion) &&
+        takt_service_hold(s, PANEL_HOLD_PROGRAM);
+    if (s->settings.single_block && record->landed && takt_motion_rests(&s->controller.motion) &&
         record->block != s->held_block) {
         s->held_block = record->block;
-        service_hold(s, PANEL_HOLD_SINGLE_BLOCK);
+        takt_service_hold(s, PANEL_HOLD_SINGLE_BLOCK);
     }
 }
 
@@ -269,25 +270,26 @@ static void drop_at_rest(struct service *s)
 {
     if (!s->giving_up || s->rest_cycles < REST_CYCLES || s->is_planning)
         return;
-    controller_drop_program(&s->controller);
+    takt_controller_drop_program(&s->controller);
     if (s->job != SERVICE_JOG)
-        controller_quieten(&s->controller);
-    service_end_job(s, s->job == SERVICE_JOG ? PANEL_OUTCOME_COMPLETED : PANEL_OUTCOME_ABORTED);
+        takt_controller_quieten(&s->controller);
+    takt_service_end_job(s,
+                         s->job == SERVICE_JOG ? PANEL_OUTCOME_COMPLETED : PANEL_OUTCOME_ABORTED);
 }
 
-void service_background(struct service *s)
+void takt_service_background(struct service *s)
 {
     s->is_planning = true;
-    controller_background(&s->controller);
+    takt_controller_background(&s->controller);
     s->is_planning = false;
 }
 
-void service_cycle(struct service *s, const struct inputs *inputs)
+void takt_service_cycle(struct service *s, const struct inputs *inputs)
 {
     set_inputs(s, inputs);
-    if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
-        controller_follow_drives(&s->controller, &s->at);
-    controller_cycle(&s->controller, &s->inputs);
+    if (takt_controller_get_state(&s->controller) == CONTROLLER_STARTING)
+        takt_controller_follow_drives(&s->controller, &s->at);
+    takt_controller_cycle(&s->controller, &s->inputs);
     take_record(s);
     stop_after_block(s);
     follow_controller(s);
@@ -298,9 +300,9 @@ void service_cycle(struct service *s, const struct inputs *inputs)
     s->cycles++;
 }
 
-struct outputs service_get_outputs(const struct service *s)
+struct outputs takt_service_get_outputs(const struct service *s)
 {
-    struct outputs outputs = *controller_get_outputs(&s->controller);
+    struct outputs outputs = *takt_controller_get_outputs(&s->controller);
 
     if (s->settings.spindle_stop)
         outputs.spindle_speed_rpm = 0.0;
@@ -308,7 +310,7 @@ struct outputs service_get_outputs(const struct service *s)
     return outputs;
 }
 
-bool service_take_spindle_reset(struct service *s)
+bool takt_service_take_spindle_reset(struct service *s)
 {
     const bool resets = s->resets_spindle;
 
@@ -333,20 +335,20 @@ static enum panel_state state_of_job(enum service_job job)
     return PANEL_IDLE;
 }
 
-enum panel_state service_get_state(const struct service *s)
+enum panel_state takt_service_get_state(const struct service *s)
 {
     if (s->emergency)
         return PANEL_EMERGENCY;
     if (s->failed)
         return PANEL_ALARM;
-    if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
+    if (takt_controller_get_state(&s->controller) == CONTROLLER_STARTING)
         return s->job == SERVICE_HOME ? PANEL_HOMING : PANEL_STARTING;
-    if (s->giving_up || controller_get_state(&s->controller) == CONTROLLER_STOPPING)
+    if (s->giving_up || takt_controller_get_state(&s->controller) == CONTROLLER_STOPPING)
         return PANEL_STOPPING;
     return s->hold != PANEL_HOLD_NONE ? PANEL_HELD : state_of_job(s->job);
 }
 
-void service_set_health(struct service *s, const struct service_health *health)
+void takt_service_set_health(struct service *s, const struct service_health *health)
 {
     s->health = *health;
 }

@@ -2,12 +2,12 @@
  * The controller as a service: the states above single programs, what the operator's panel orders, and what is shown to
  * it. Jog, homing and MDI are programs of a line or two, so they run through the same planner, limits and drives.
  *
- *     service_order        what a panel wants: all of it or nothing, at once
- *     service_background   reads and plans ahead, as often as there is time
- *     service_cycle        one control cycle
- *     service_look         everything a panel can read
+ *     takt_service_order        what a panel wants: all of it or nothing, at once
+ *     takt_service_background   reads and plans ahead, as often as there is time
+ *     takt_service_cycle        one control cycle
+ *     takt_service_look         everything a panel can read
  *
- * service_cycle may interrupt service_background, as the interrupt of a target does. Otherwise the caller sees to it that
+ * takt_service_cycle may interrupt takt_service_background, as the interrupt of a target does. Otherwise the caller sees to it that
  * none of these runs while another does.
  */
 #ifndef TAKT_SERVICE_SERVICE_H
@@ -90,41 +90,41 @@ enum service_job { SERVICE_NOTHING, SERVICE_PROGRAM, SERVICE_MDI, SERVICE_JOG, S
 
 #include "service/service_state.h"
 
-void service_init(struct service *s, const struct service_config *config);
+void takt_service_init(struct service *s, const struct service_config *config);
 
 /* The program that is there at power-on, for the panel to show. */
-void service_set_program(struct service *s, uint32_t size, uint32_t crc);
+void takt_service_set_program(struct service *s, uint32_t size, uint32_t crc);
 
 /* Where the next program starts; 0: at its beginning. */
-void service_set_start_line(struct service *s, uint32_t line);
+void takt_service_set_start_line(struct service *s, uint32_t line);
 /* The line at which the program that runs is, or the last one was cut short; 0: it has come to its end. */
-uint32_t service_get_cut_line(const struct service *s);
+uint32_t takt_service_get_cut_line(const struct service *s);
 
 /* Between two cycles. Nothing has changed unless PANEL_DONE. */
-enum panel_verdict service_order(struct service *s, const struct panel_order *order);
+enum panel_verdict takt_service_order(struct service *s, const struct panel_order *order);
 
 /* The panel in control has been heard. */
-void service_alive(struct service *s);
+void takt_service_alive(struct service *s);
 
-void service_background(struct service *s);
+void takt_service_background(struct service *s);
 
 /* inputs: the world's; overrides and hold of it are the panel's, and not used. */
-void service_cycle(struct service *s, const struct inputs *inputs);
+void takt_service_cycle(struct service *s, const struct inputs *inputs);
 
 /* What the outputs are to be after the last cycle: the controller's, with the spindle override. */
-struct outputs service_get_outputs(const struct service *s);
+struct outputs takt_service_get_outputs(const struct service *s);
 
 /* True once after a trip of the spindle has been acknowledged: its drive is to be reset. */
-bool service_take_spindle_reset(struct service *s);
+bool takt_service_take_spindle_reset(struct service *s);
 
 /* This bus is gone, and its drives stop by themselves: an alarm, and all stop. Every cycle as long as it is. */
-void service_lose_bus(struct service *s, unsigned bus);
+void takt_service_lose_bus(struct service *s, unsigned bus);
 
-enum panel_state service_get_state(const struct service *s);
+enum panel_state takt_service_get_state(const struct service *s);
 
-void service_set_health(struct service *s, const struct service_health *health);
+void takt_service_set_health(struct service *s, const struct service_health *health);
 /* What a console asks for. */
-void service_tell(const struct service *s, enum console_fact fact, double value[AXIS_COUNT]);
-void service_look(const struct service *s, struct panel_snapshot *snapshot);
+void takt_service_tell(const struct service *s, enum console_fact fact, double value[AXIS_COUNT]);
+void takt_service_look(const struct service *s, struct panel_snapshot *snapshot);
 
 #endif

@@ -7,38 +7,38 @@
 #include "service/service.h"
 
 /* service_jobs.c: starting and ending what runs. False: there is no program, or it would leave the travel. */
-bool service_start_program(struct service *s);
-void service_start_mdi(struct service *s, const char *line);
+bool takt_service_start_program(struct service *s);
+void takt_service_start_mdi(struct service *s, const char *line);
 /* The line as a jog: it is given up by a hold. */
-void service_start_jog_line(struct service *s, const char *line);
-/* An MDI line or more, of a source; config: of service_controller_config, with it. */
-void service_start_text_of(struct service *s, const struct controller_config *config);
+void takt_service_start_jog_line(struct service *s, const char *line);
+/* An MDI line or more, of a source; config: of takt_service_controller_config, with it. */
+void takt_service_start_text_of(struct service *s, const struct controller_config *config);
 /* lines.c: the lines of a console, as they come. False: there is no console. */
-bool service_start_lines(struct service *s);
+bool takt_service_start_lines(struct service *s);
 /* They have ended with the job. */
-void service_end_lines(struct service *s, enum panel_outcome outcome);
+void takt_service_end_lines(struct service *s, enum panel_outcome outcome);
 /* What the panel has written of the set-up of the part is taken: G10 L13. */
-void service_start_setup(struct service *s);
-bool service_jog_is_possible(const struct service *s, bool negative);
-void service_start_jog(struct service *s, bool negative);
+void takt_service_start_setup(struct service *s);
+bool takt_service_jog_is_possible(const struct service *s, bool negative);
+void takt_service_start_jog(struct service *s, bool negative);
 /* Homing: first the drives, then the way to machine zero. */
-void service_start_home(struct service *s);
-void service_go_to_zero(struct service *s);
+void takt_service_start_home(struct service *s);
+void takt_service_go_to_zero(struct service *s);
 /* What ran has ended by itself, or has been given up. */
-void service_end_job(struct service *s, enum panel_outcome outcome);
+void takt_service_end_job(struct service *s, enum panel_outcome outcome);
 /* The plan that has come, if any; and what comes of it is dropped. */
-enum service_plan service_open_plan(const struct service *s, struct replay_source *source);
-void service_forget_plan(struct service *s);
+enum service_plan takt_service_open_plan(const struct service *s, struct replay_source *source);
+void takt_service_forget_plan(struct service *s);
 /* In the table; NULL: it is not there. */
-struct tool *service_find_tool(const struct service *s, uint32_t number);
+struct tool *takt_service_find_tool(const struct service *s, uint32_t number);
 /* What runs comes to rest and is dropped. */
-void service_give_up(struct service *s);
+void takt_service_give_up(struct service *s);
 
 /* service.c */
-struct controller_config service_controller_config(const struct service *s);
+struct controller_config takt_service_controller_config(const struct service *s);
 /* Enables the drives again, and homes them again if told so. */
-void service_recover(struct service *s, bool home);
-void service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text);
-void service_hold(struct service *s, enum panel_hold reason);
+void takt_service_recover(struct service *s, bool home);
+void takt_service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text);
+void takt_service_hold(struct service *s, enum panel_hold reason);
 
 #endif

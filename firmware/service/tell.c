@@ -12,7 +12,7 @@
 static void tell_parameters(const struct service *s, unsigned first, double value[AXIS_COUNT])
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        value[i] = parameters_get(s->config.parameters, first + i);
+        value[i] = takt_parameters_get(s->config.parameters, first + i);
 }
 
 static void tell_point(const struct point *at, double value[AXIS_COUNT])
@@ -31,11 +31,11 @@ static double turning(double speed_rpm)
 
 static void tell_words(const struct service *s, double value[AXIS_COUNT])
 {
-    const struct program_modes *m = program_get_modes(&s->controller.reader->program);
-    const struct outputs *outputs = controller_get_outputs(&s->controller);
+    const struct program_modes *m = takt_program_get_modes(&s->controller.reader->program);
+    const struct outputs *outputs = takt_controller_get_outputs(&s->controller);
     struct program_answer last;
 
-    (void)controller_get_answers(&s->controller, &last);
+    (void)takt_controller_get_answers(&s->controller, &last);
     value[0] = last.contact ? 1.0 : 0.0;
     value[1] = m->feed_mm_s * MM_MIN_PER_MM_S;
     value[2] = m->speed_rpm;
@@ -48,11 +48,11 @@ static void tell_probe(const struct service *s, double value[AXIS_COUNT])
 {
     struct program_answer last;
 
-    (void)controller_get_answers(&s->controller, &last);
+    (void)takt_controller_get_answers(&s->controller, &last);
     tell_point(&last.contact_at, value);
 }
 
-void service_tell(const struct service *s, enum console_fact fact, double value[AXIS_COUNT])
+void takt_service_tell(const struct service *s, enum console_fact fact, double value[AXIS_COUNT])
 {
     switch (fact) {
     case CONSOLE_FACT_REFERENCE_1:
@@ -65,7 +65,7 @@ void service_tell(const struct service *s, enum console_fact fact, double value[
         tell_parameters(s, PARAMETER_AXIS_OFFSET, value);
         break;
     case CONSOLE_FACT_TOOL_OFFSET:
-        tell_point(&program_get_modes(&s->controller.reader->program)->tool_offset, value);
+        tell_point(&takt_program_get_modes(&s->controller.reader->program)->tool_offset, value);
         break;
     case CONSOLE_FACT_PROBE:
         tell_probe(s, value);

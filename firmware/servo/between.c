@@ -17,8 +17,8 @@ static void begin(struct between *between, double at_mm)
     between->is_known = true;
 }
 
-void between_take(struct between *between, double at_mm, double target_mm,
-                  double piece[BETWEEN_COEFFICIENTS])
+void takt_between_take(struct between *between, double at_mm, double target_mm,
+                       double piece[BETWEEN_COEFFICIENTS])
 {
     double *x = between->target_mm;
     if (!between->is_known || x[2] != at_mm)
@@ -39,7 +39,7 @@ void between_take(struct between *between, double at_mm, double target_mm,
     piece[5] = 6 * way - 3 * v1 - 3 * v2 - 0.5 * a1 + 0.5 * a2;
 }
 
-void between_at(const double piece[BETWEEN_COEFFICIENTS], double u, double place[3])
+void takt_between_at(const double piece[BETWEEN_COEFFICIENTS], double u, double place[3])
 {
     place[0] = place[1] = place[2] = 0;
     for (unsigned i = BETWEEN_COEFFICIENTS; i > 0; i--) {

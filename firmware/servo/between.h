@@ -19,10 +19,10 @@ struct between {
  * of u. It ends at the target of the cycle before, which the next target tells how to pass. at_mm: where the command is; if
  * it is not where the last piece ended, the axis is taken to stand there.
  */
-void between_take(struct between *between, double at_mm, double target_mm,
-                  double piece[BETWEEN_COEFFICIENTS]);
+void takt_between_take(struct between *between, double at_mm, double target_mm,
+                       double piece[BETWEEN_COEFFICIENTS]);
 
 /* Position and its first two derivatives by u. */
-void between_at(const double piece[BETWEEN_COEFFICIENTS], double u, double place[3]);
+void takt_between_at(const double piece[BETWEEN_COEFFICIENTS], double u, double place[3]);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-void compensation_init(struct compensation *compensation, const struct motor_port *motor)
+void takt_compensation_init(struct compensation *compensation, const struct motor_port *motor)
 {
     memset(compensation, 0, sizeof *compensation);
     if (motor != NULL)
@@ -16,7 +16,7 @@ static double play_mm(const struct compensation *c)
     return c->direction * c->backlash_mm / 2;
 }
 
-void compensation_set_backlash(struct compensation *compensation, double backlash_mm)
+void takt_compensation_set_backlash(struct compensation *compensation, double backlash_mm)
 {
     compensation->backlash_mm = backlash_mm;
     compensation->play_mm = (struct fade){.value = play_mm(compensation)};
@@ -27,10 +27,10 @@ void compensation_set_backlash(struct compensation *compensation, double backlas
 static double axis_mm(const struct compensation *c, double encoder_mm)
 {
     double motor_mm = encoder_mm - c->play_mm.value;
-    return c->is_homed ? motor_mm + pitch_at(&c->pitch, motor_mm - c->origin_mm) : motor_mm;
+    return c->is_homed ? motor_mm + takt_pitch_at(&c->pitch, motor_mm - c->origin_mm) : motor_mm;
 }
 
-double compensation_get_axis_mm(const struct compensation *compensation)
+double takt_compensation_get_axis_mm(const struct compensation *compensation)
 {
     return axis_mm(compensation, compensation->encoder_mm);
 }
@@ -48,7 +48,7 @@ static double turn_axis(void *context, double torque_mm_s2, double step_s)
     if (takes_nothing(c))
         return c->encoder_mm;
     (void)fade_cycle(&c->play_mm, play_mm(c), &c->pace);
-    return compensation_get_axis_mm(c);
+    return takt_compensation_get_axis_mm(c);
 }
 
 static void sense_axis(void *context, uint32_t cycle_ns, struct motor_sense *sense)
@@ -58,13 +58,13 @@ static void sense_axis(void *context, uint32_t cycle_ns, struct motor_sense *sen
     c->encoder_mm = sense->encoder_mm;
     if (takes_nothing(c))
         return;
-    sense->encoder_mm = compensation_get_axis_mm(c);
+    sense->encoder_mm = takt_compensation_get_axis_mm(c);
     sense->pulse.encoder_mm = axis_mm(c, sense->pulse.encoder_mm);
     for (unsigned i = 0; i < MOTOR_INPUTS; i++)
         sense->edge[i].encoder_mm = axis_mm(c, sense->edge[i].encoder_mm);
 }
 
-struct motor_port compensation_get_port(struct compensation *compensation)
+struct motor_port takt_compensation_get_port(struct compensation *compensation)
 {
     return (struct motor_port){.turn = turn_axis, .sense = sense_axis, .context = compensation};
 }
@@ -73,15 +73,15 @@ struct motor_port compensation_get_port(struct compensation *compensation)
 static double crossing_s(double backlash_mm, double acceleration_mm_s2)
 {
     struct fade_pace second;
-    fade_pace_set(&second, 1, 1.0 / FADE_CYCLES_MIN);
-    return maths_sqrt(fade_acceleration_per_s2(&second) * backlash_mm / acceleration_mm_s2);
+    takt_fade_pace_set(&second, 1, 1.0 / FADE_CYCLES_MIN);
+    return maths_sqrt(takt_fade_acceleration_per_s2(&second) * backlash_mm / acceleration_mm_s2);
 }
 
 /*
  * Where the motor is to be lies in a window as wide as the resolution, which it pushes along: at which end is the direction. The
  * motor's way is that of the axis and of the play: a play that fades is no way back.
  */
-void compensation_follow(struct compensation *compensation, const struct compensation_way *way)
+void takt_compensation_follow(struct compensation *compensation, const struct compensation_way *way)
 {
     struct compensation *c = compensation;
     double slack_mm = c->slack_mm + way->way_mm + (c->play_mm.value - c->followed_mm);
@@ -91,5 +91,6 @@ void compensation_follow(struct compensation *compensation, const struct compens
     if (slack_mm != c->slack_mm)
         c->direction = slack_mm > c->slack_mm ? 1 : -1;
     if (c->direction != before)
-        fade_pace_set(&c->pace, crossing_s(c->backlash_mm, way->acceleration_mm_s2), way->step_s);
+        takt_fade_pace_set(&c->pace, crossing_s(c->backlash_mm, way->acceleration_mm_s2),
+                           way->step_s);
 }

@@ -32,16 +32,16 @@ struct compensation {
 };
 
 /* Nothing is taken back yet. motor: must stay usable as long as this; NULL: there is none. */
-void compensation_init(struct compensation *compensation, const struct motor_port *motor);
+void takt_compensation_init(struct compensation *compensation, const struct motor_port *motor);
 
 /* The play is so wide from now on, wherever it is: while nobody follows what the motor says. */
-void compensation_set_backlash(struct compensation *compensation, double backlash_mm);
+void takt_compensation_set_backlash(struct compensation *compensation, double backlash_mm);
 
 /* The port on it. compensation must stay where it is. */
-struct motor_port compensation_get_port(struct compensation *compensation);
+struct motor_port takt_compensation_get_port(struct compensation *compensation);
 
 /* What its encoder says now, where the axis is. */
-double compensation_get_axis_mm(const struct compensation *compensation);
+double takt_compensation_get_axis_mm(const struct compensation *compensation);
 
 /* How the axis has been told to go in a cycle, and how a reversal is made of it. */
 struct compensation_way {
@@ -51,6 +51,7 @@ struct compensation_way {
     double step_s;             /* from one turn of the motor to the next */
 };
 
-void compensation_follow(struct compensation *compensation, const struct compensation_way *way);
+void takt_compensation_follow(struct compensation *compensation,
+                              const struct compensation_way *way);
 
 #endif

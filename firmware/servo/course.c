@@ -30,15 +30,15 @@ static double allowed_velocity(double way_mm, double u_mm_s, const struct course
     return square > half * half ? maths_sqrt(square) - half : 0;
 }
 
-double course_approach(double value, double goal, double by)
+double takt_course_approach(double value, double goal, double by)
 {
     if (maths_abs(goal - value) <= by)
         return goal;
     return goal > value ? value + by : value - by;
 }
 
-void course_step(struct course *course, double target_mm, const struct course_ramps *ramps,
-                 double cycle_s)
+void takt_course_step(struct course *course, double target_mm, const struct course_ramps *ramps,
+                      double cycle_s)
 {
     double way_mm = target_mm - course->at_mm;
     double sign = way_mm < 0 ? -1 : 1;
@@ -52,17 +52,17 @@ void course_step(struct course *course, double target_mm, const struct course_ra
     double wanted_mm_s = maths_min(ramps->velocity_mm_s, allowed_mm_s);
     double by_mm_s =
         wanted_mm_s > u_mm_s && u_mm_s >= 0 ? ramps->acceleration_mm_s2 * cycle_s : brake_mm_s;
-    double velocity_mm_s = sign * course_approach(u_mm_s, wanted_mm_s, by_mm_s);
+    double velocity_mm_s = sign * takt_course_approach(u_mm_s, wanted_mm_s, by_mm_s);
     double mean_mm_s = (course->velocity_mm_s + velocity_mm_s) / 2;
     *course = (struct course){course->at_mm + mean_mm_s * cycle_s, velocity_mm_s};
 }
 
 static int64_t place_of(double at_mm)
 {
-    return (int64_t)maths_round(at_mm * COURSE_PLACES_PER_MM);
+    return (int64_t)takt_maths_round(at_mm * COURSE_PLACES_PER_MM);
 }
 
-/* Of this many cycles in which the axis has moved evenly, so that their average is where it is now. */
+/* Begins with this many cycles in which the axis has moved evenly, so that their average is where it is now. */
 static void begin(struct course_average *average, const struct course *command, uint32_t count,
                   double cycle_s)
 {
@@ -81,7 +81,7 @@ static void begin(struct course_average *average, const struct course *command, 
 static uint32_t cycles_of(const struct course_ramps *ramps, double cycle_s)
 {
     double change_mm_s2 = ramps->acceleration_mm_s2 + 2 * ramps->deceleration_mm_s2;
-    return (uint32_t)maths_clamp(maths_ceil(change_mm_s2 / (ramps->jerk_mm_s3 * cycle_s)), 1,
+    return (uint32_t)maths_clamp(takt_maths_ceil(change_mm_s2 / (ramps->jerk_mm_s3 * cycle_s)), 1,
                                  COURSE_CYCLES_MAX);
 }
 
@@ -97,19 +97,19 @@ static double push(struct course_average *average)
                : (double)average->sum / (COURSE_PLACES_PER_MM * average->count);
 }
 
-bool course_is_elsewhere(const struct course_average *average, const struct course *command)
+bool takt_course_is_elsewhere(const struct course_average *average, const struct course *command)
 {
     return average->count == 0 || average->out_mm != command->at_mm;
 }
 
-void course_step_average(struct course_average *average, struct course *command, double target_mm,
-                         const struct course_ramps *ramps, double cycle_s)
+void takt_course_step_average(struct course_average *average, struct course *command,
+                              double target_mm, const struct course_ramps *ramps, double cycle_s)
 {
     uint32_t count = cycles_of(ramps, cycle_s);
     bool rests = command->velocity_mm_s == 0 && average->course.velocity_mm_s == 0;
-    if (course_is_elsewhere(average, command) || (rests && average->count != count))
+    if (takt_course_is_elsewhere(average, command) || (rests && average->count != count))
         begin(average, command, count, cycle_s);
-    course_step(&average->course, target_mm, ramps, cycle_s);
+    takt_course_step(&average->course, target_mm, ramps, cycle_s);
     average->out_mm = push(average);
     command->velocity_mm_s = (average->out_mm - command->at_mm) / cycle_s;
     command->at_mm = average->out_mm;

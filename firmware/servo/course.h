@@ -29,20 +29,20 @@ struct course_average {
 };
 
 /* value goes to goal, by so much at most. */
-double course_approach(double value, double goal, double by);
+double takt_course_approach(double value, double goal, double by);
 
 /* A cycle of a trapezoid. Near enough to get there within the next cycle's rounding, it is there. */
-void course_step(struct course *course, double target_mm, const struct course_ramps *ramps,
-                 double cycle_s);
+void takt_course_step(struct course *course, double target_mm, const struct course_ramps *ramps,
+                      double cycle_s);
 
 /*
  * The same with limited jerk: from where the command is, with its velocity, which both become those of the next cycle.
  * Averages over other cycles begin only at rest.
  */
-void course_step_average(struct course_average *average, struct course *command, double target_mm,
-                         const struct course_ramps *ramps, double cycle_s);
+void takt_course_step_average(struct course_average *average, struct course *command,
+                              double target_mm, const struct course_ramps *ramps, double cycle_s);
 
 /* Is there no average yet, or has something else moved the command since? */
-bool course_is_elsewhere(const struct course_average *average, const struct course *command);
+bool takt_course_is_elsewhere(const struct course_average *average, const struct course *command);
 
 #endif

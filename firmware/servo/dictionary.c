@@ -7,8 +7,8 @@ static uint32_t place(uint16_t index, uint8_t sub)
     return (uint32_t)index << 8 | sub;
 }
 
-const struct object_row *dictionary_find(const struct dictionary *dictionary, uint16_t index,
-                                         uint8_t sub, bool *has_index)
+const struct object_row *takt_dictionary_find(const struct dictionary *dictionary, uint16_t index,
+                                              uint8_t sub, bool *has_index)
 {
     const struct object_row *row = dictionary->row;
     unsigned low = 0, high = dictionary->count;
@@ -26,31 +26,31 @@ const struct object_row *dictionary_find(const struct dictionary *dictionary, ui
     return &row[low];
 }
 
-bool dictionary_is_memory(const struct object_row *row)
+bool takt_dictionary_is_memory(const struct object_row *row)
 {
     return !(row->flags & OBJECT_FIXED) && row->field >= offsetof(struct drive_objects, extra);
 }
 
-void dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
-                            struct drive_objects *objects, uint8_t node)
+void takt_dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
+                                 struct drive_objects *objects, uint8_t node)
 {
     for (unsigned i = 0; i < dictionary->count; i++) {
         const struct object_row *row = &dictionary->row[i];
         bool is_of_machine = row->flags & OBJECT_BY_MACHINE;
-        if (object_type_bytes((enum object_type)row->type) == 0 ||
+        if (takt_object_type_bytes((enum object_type)row->type) == 0 ||
             (is_of_machine && part == DICTIONARY_NOT_OF_MACHINE))
             continue;
         uint32_t added = row->flags & OBJECT_NODE_ID ? node : 0;
-        object_write(row, objects, (uint32_t)row->initial + added);
+        takt_object_write(row, objects, (uint32_t)row->initial + added);
     }
 }
 
-void dictionary_copy_memory(const struct dictionary *dictionary, struct drive_objects *to,
-                            const struct drive_objects *from, uint16_t last)
+void takt_dictionary_copy_memory(const struct dictionary *dictionary, struct drive_objects *to,
+                                 const struct drive_objects *from, uint16_t last)
 {
     for (unsigned i = 0; i < dictionary->count; i++) {
         const struct object_row *row = &dictionary->row[i];
-        if (row->index <= last && dictionary_is_memory(row))
-            object_write(row, to, object_read(row, from));
+        if (row->index <= last && takt_dictionary_is_memory(row))
+            takt_object_write(row, to, takt_object_read(row, from));
     }
 }

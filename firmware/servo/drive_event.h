@@ -9,7 +9,7 @@
 enum drive_event_kind {
     DRIVE_EVENT_BOOT,      /* boot-up message sent */
     DRIVE_EVENT_NMT,       /* first: enum nmt_state, the new one */
-    DRIVE_EVENT_STATE,     /* first, second: enum cia402_state, from and to */
+    DRIVE_EVENT_STATE,     /* first, second: enum takt_cia402_state, from and to */
     DRIVE_EVENT_MODE,      /* first: mode of operation */
     DRIVE_EVENT_EMCY,      /* first: error code, 0: all gone; second: error register */
     DRIVE_EVENT_PDO,       /* first: 1400 ... or 1800 ...; second: its COB-ID, as set */

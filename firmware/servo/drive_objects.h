@@ -71,8 +71,8 @@ struct drive_settings {
     uint32_t torque_slope;                /* 6087: 0.1 % of the rated torque in a second */
     uint32_t max_acceleration;            /* 60C5 */
     uint32_t max_deceleration;            /* 60C6 */
-    uint32_t gear_motor, gear_shaft;      /* 6091: turns of the motor are so many of the shaft */
-    uint32_t feed_increments, feed_shaft; /* 6092: increments in so many turns of the shaft */
+    uint32_t gear_motor, gear_shaft;      /* 6091: turns of the motor, for turns of the shaft */
+    uint32_t feed_increments, feed_shaft; /* 6092: increments in this many turns of the shaft */
     uint32_t homing_velocity[2];          /* 6099: towards the switch, away from it */
     uint32_t homing_acceleration;         /* 609A */
     uint32_t output_mask;                 /* 60FE:2 */

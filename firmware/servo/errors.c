@@ -18,7 +18,7 @@ static void note(struct drive_process *p, uint16_t code)
         p->history_count++;
 }
 
-void servo_clear_history(struct servo *drive)
+void takt_servo_clear_history(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
     memset(p->history, 0, sizeof p->history);
@@ -33,13 +33,13 @@ static void send_emcy(struct servo *drive, const struct emcy *emcy)
     uint16_t inhibit_100us = drive->objects.communication.emcy_inhibit_100us;
     if (cob_id >> 31)
         return;
-    emcy_write(&frame, emcy);
+    takt_emcy_write(&frame, emcy);
     frame.id = (uint16_t)cob_id;
-    (void)servo_send(drive, SERVO_FRAME_EMCY, &frame);
+    (void)takt_servo_send(drive, SERVO_FRAME_EMCY, &frame);
     drive->emcy_ns = drive->now_ns + inhibit_100us * UINT64_C(100000);
 }
 
-void servo_send_waiting_emergencies(struct servo *drive)
+void takt_servo_send_waiting_emergencies(struct servo *drive)
 {
     while (drive->emcy_count > 0 && drive->now_ns >= drive->emcy_ns) {
         send_emcy(drive, &drive->emcy[0]);
@@ -55,18 +55,18 @@ static void send_or_wait(struct servo *drive, const struct emcy *emcy)
         send_emcy(drive, emcy);
     } else if (drive->emcy_count < SERVO_EMCY_QUEUE) {
         drive->emcy[drive->emcy_count++] = *emcy;
-        servo_look_soon(drive);
+        takt_servo_look_soon(drive);
     }
 }
 
-void servo_send_emergency(struct servo *drive, uint16_t code, uint8_t error_register)
+void takt_servo_send_emergency(struct servo *drive, uint16_t code, uint8_t error_register)
 {
     struct drive_process *p = &drive->objects.process;
     const struct emcy emcy = {
         .node = drive->config.node, .code = code, .error_register = error_register};
     if (code != EMCY_NONE)
         note(p, code);
-    servo_tell(drive, DRIVE_EVENT_EMCY, code, error_register);
+    takt_servo_tell(drive, DRIVE_EVENT_EMCY, code, error_register);
     if (drive->nmt == NMT_OPERATIONAL || drive->nmt == NMT_PREOPERATIONAL)
         send_or_wait(drive, &emcy);
 }
@@ -83,10 +83,10 @@ static void behave(struct servo *drive)
         drive->nmt = NMT_STOPPED;
     else
         return;
-    servo_tell(drive, DRIVE_EVENT_NMT, (uint32_t)drive->nmt, 0);
+    takt_servo_tell(drive, DRIVE_EVENT_NMT, (uint32_t)drive->nmt, 0);
 }
 
-void servo_set_communication_error(struct servo *drive, uint16_t code)
+void takt_servo_set_communication_error(struct servo *drive, uint16_t code)
 {
     uint8_t *error_register = &drive->objects.process.error_register;
     if (code == drive->communication_error)
@@ -96,11 +96,11 @@ void servo_set_communication_error(struct servo *drive, uint16_t code)
         *error_register &= (uint8_t)~EMCY_REGISTER_COMMUNICATION;
         if (drive->objects.process.error_code == EMCY_NONE)
             *error_register = 0;
-        servo_send_emergency(drive, EMCY_NONE, *error_register);
+        takt_servo_send_emergency(drive, EMCY_NONE, *error_register);
         return;
     }
     *error_register |= EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION;
-    servo_send_emergency(drive, code, *error_register);
+    takt_servo_send_emergency(drive, code, *error_register);
     behave(drive);
-    servo_lose_connection(drive);
+    takt_servo_lose_connection(drive);
 }

@@ -12,7 +12,7 @@ static double size_at(const struct friction *f, double points)
     return f->at[k] + (points - k) * (f->at[k + 1] - f->at[k]);
 }
 
-double friction_at(const struct friction *friction, double velocity)
+double takt_friction_at(const struct friction *friction, double velocity)
 {
     if (velocity == 0)
         return 0;

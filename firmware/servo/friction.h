@@ -14,6 +14,6 @@ struct friction {
 };
 
 /* What moves on at this velocity against friction; at 0 nothing does. Its sign is the velocity's. */
-double friction_at(const struct friction *friction, double velocity);
+double takt_friction_at(const struct friction *friction, double velocity);
 
 #endif

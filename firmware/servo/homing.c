@@ -104,12 +104,12 @@ static const struct method *find_method(int32_t number)
     return NULL;
 }
 
-bool servo_has_homing_method(int32_t method)
+bool takt_servo_has_homing_method(int32_t method)
 {
     return method == METHOD_HERE || method == METHOD_HERE_OLD || find_method(method);
 }
 
-uint32_t servo_inputs(const struct servo *drive)
+uint32_t takt_servo_inputs(const struct servo *drive)
 {
     return drive->loop.sense.inputs | (drive->probe.touches ? INPUT_PROBE : 0);
 }
@@ -124,7 +124,7 @@ static void await_index(struct servo *drive, double direction)
 
 static void tell(const struct servo *drive, uint32_t what)
 {
-    servo_tell(drive, DRIVE_EVENT_HOMING, what, (uint8_t)drive->homing.method);
+    takt_servo_tell(drive, DRIVE_EVENT_HOMING, what, (uint8_t)drive->homing.method);
 }
 
 static void latch(struct servo *drive, double at_encoder_mm)
@@ -133,12 +133,12 @@ static void latch(struct servo *drive, double at_encoder_mm)
     drive->homing.phase = HOMING_STOP;
 }
 
-void servo_begin_homing(struct servo *drive)
+void takt_servo_begin_homing(struct servo *drive)
 {
     const struct method *method = find_method(drive->objects.settings.homing_method);
     drive->homing.method = drive->objects.settings.homing_method;
     drive->homing.is_homed = false;
-    servo_take_origin(drive);
+    takt_servo_take_origin(drive);
     drive->homing.push_ns = 0;
     tell(drive, HOMING_BEGUN);
     if (!method) {
@@ -152,7 +152,7 @@ void servo_begin_homing(struct servo *drive)
         drive->homing.phase = method->input == INPUT_STOP ? HOMING_PUSH : HOMING_SEARCH;
 }
 
-void servo_interrupt_homing(struct servo *drive)
+void takt_servo_interrupt_homing(struct servo *drive)
 {
     if (drive->homing.phase == HOMING_IDLE)
         return;
@@ -171,15 +171,15 @@ static void run_towards(struct servo *drive, int8_t direction, double velocity_m
 {
     double acceleration_mm_s2 =
         drive->objects.settings.homing_acceleration / servo_velocity_scale(drive);
-    servo_run_at(drive, direction * servo_sign(drive) * velocity_mm_s, acceleration_mm_s2,
-                 cycle_ns);
+    takt_servo_run_at(drive, direction * servo_sign(drive) * velocity_mm_s, acceleration_mm_s2,
+                      cycle_ns);
 }
 
 /* Directions of a method are those of the drive. An end of the axis that the method does not want is where it fails. */
 static bool hits_other_end(const struct servo *drive, const struct method *method, int8_t direction)
 {
     uint32_t end = direction < 0 ? INPUT_NEGATIVE_LIMIT : INPUT_POSITIVE_LIMIT;
-    return method->input != end && servo_inputs(drive) & end;
+    return method->input != end && takt_servo_inputs(drive) & end;
 }
 
 /* What was latched when the switch of the method changed last. */
@@ -204,7 +204,7 @@ static void fail(struct servo *drive)
 
 static bool is_active(const struct servo *drive, const struct method *method)
 {
-    return servo_inputs(drive) & method->input;
+    return takt_servo_inputs(drive) & method->input;
 }
 
 /*
@@ -269,7 +269,7 @@ static void find_edge(struct servo *drive, const struct method *method, uint32_t
 
 static void leave_stop(struct servo *drive)
 {
-    servo_loop_let_go(&drive->loop);
+    takt_servo_loop_let_go(&drive->loop);
     drive->velocity_mm_s = 0;
 }
 
@@ -280,7 +280,7 @@ static void push(struct servo *drive, const struct method *method, uint32_t cycl
     double sign = method->search * servo_sign(drive);
     double threshold = drive->objects.settings.homing_torque / TORQUE_PER_RATED;
     run_towards(drive, method->search, speed_mm_s(drive, 0), cycle_ns);
-    bool pushes = sign * servo_loop_torque_ratio(loop) >= threshold &&
+    bool pushes = sign * takt_servo_loop_torque_ratio(loop) >= threshold &&
                   maths_abs(loop->measured_velocity_mm_s) <= loop->standstill_mm_s;
     drive->homing.push_ns = pushes ? drive->homing.push_ns + cycle_ns : 0;
     if (drive->homing.push_ns < PUSH_NS)
@@ -313,15 +313,15 @@ static void stop(struct servo *drive, uint32_t cycle_ns)
         return;
     double home_mm = -(double)drive->objects.settings.home_offset / drive->increments_per_mm;
     drive->origin_mm =
-        drive->homing.encoder_mm - pitch_get_motor_mm(&drive->compensation.pitch, home_mm);
+        drive->homing.encoder_mm - takt_pitch_get_motor_mm(&drive->compensation.pitch, home_mm);
     drive->homing.is_homed = true;
-    servo_take_origin(drive);
+    takt_servo_take_origin(drive);
     drive->homing.phase = HOMING_IDLE;
-    servo_hold(drive);
+    takt_servo_hold(drive);
     tell(drive, HOMING_ATTAINED);
 }
 
-void servo_run_homing(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_run_homing(struct servo *drive, uint32_t cycle_ns)
 {
     const struct method *method = find_method(drive->homing.method);
     switch (drive->homing.phase) {

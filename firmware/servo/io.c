@@ -19,18 +19,18 @@ static void note_change(struct servo *drive)
     uint32_t seen = (uint32_t)drive->nmt << 16;
     for (unsigned i = 0; i < DICTIONARY_IO_BYTES; i++) {
         uint32_t byte = 0;
-        (void)servo_read_object(drive, PDO_MAPPED(OBJECT_IO_INPUTS, i + 1, 8), &byte);
+        (void)takt_servo_read_object(drive, PDO_MAPPED(OBJECT_IO_INPUTS, i + 1, 8), &byte);
         seen |= byte << 8 * i;
     }
     if (seen == drive->seen_io)
         return;
     drive->seen_io = seen;
     drive->tpdo[0].is_due = true;
-    servo_look_soon(drive);
+    takt_servo_look_soon(drive);
 }
 
 /* Without a controller all outputs are low, and 0: CiA 401, objects 6206, 6207, 6443 and 6444 by default. */
-void servo_run_io(struct servo *drive)
+void takt_servo_run_io(struct servo *drive)
 {
     bool is_controlled = drive->nmt == NMT_OPERATIONAL && drive->communication_error == EMCY_NONE;
     for (unsigned i = 0; i < DICTIONARY_IO_BYTES; i++) {

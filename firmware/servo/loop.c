@@ -11,8 +11,8 @@
  * Everything in units of the axis: with h = travel_per_revolution / 2 pi, an angle phi of the motor is h phi of the axis, and
  * a torque M of the motor an acceleration h M / J. The velocity loop is v' = Kp (e + integral e / Ti), Kp = 2 pi bandwidth.
  */
-void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
-                     const struct motor_port *motor)
+void takt_servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
+                          const struct motor_port *motor)
 {
     double travel_per_rad_mm = config->travel_per_revolution_mm / MATHS_TWO_PI;
     uint32_t counts = config->encoder_counts_per_revolution;
@@ -27,11 +27,11 @@ void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *co
     loop->friction = config->friction_nm;
     for (unsigned i = 0; i < FRICTION_POINTS; i++)
         loop->friction.at[i] *= travel_per_rad_mm / config->inertia_kg_m2;
-    servo_loop_tune(loop, config);
+    takt_servo_loop_tune(loop, config);
     loop->encoder_step_mm = counts ? config->travel_per_revolution_mm / counts : 0;
     loop->encoder_steps_per_mm = counts / config->travel_per_revolution_mm;
     loop->standstill_mm_s = config->travel_per_revolution_mm * STANDSTILL_REVOLUTIONS_PER_S;
-    servo_loop_look(loop);
+    takt_servo_loop_look(loop);
     loop->command_mm = loop->measured_mm;
 }
 
@@ -39,7 +39,7 @@ void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *co
  * The loops think in accelerations, and the motor gets the torque M = J_told a / h: with an inertia J it is accelerated by
  * J_told / J of what they want.
  */
-void servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config)
+void takt_servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config)
 {
     const double inertia_kg_m2 = loop->config.inertia_kg_m2,
                  told_kg_m2 = config->told_inertia_kg_m2;
@@ -59,12 +59,12 @@ static void look(struct servo_loop *loop, uint32_t cycle_ns)
     loop->measured_mm = loop->sense.encoder_mm;
 }
 
-void servo_loop_look(struct servo_loop *loop)
+void takt_servo_loop_look(struct servo_loop *loop)
 {
     look(loop, 0);
 }
 
-double servo_loop_torque_limit_mm_s2(const struct servo_loop *loop)
+double takt_servo_loop_torque_limit_mm_s2(const struct servo_loop *loop)
 {
     return maths_min(loop->acceleration_max_mm_s2 * loop->sense.torque_ratio,
                      loop->torque_limit_mm_s2);
@@ -88,7 +88,7 @@ static struct cycle begin_cycle(struct servo_loop *loop, uint32_t cycle_ns)
         loop->step_s = loop->cycle_s / loop->steps;
         loop->per_step_s = 1 / loop->step_s;
     }
-    return (struct cycle){.limit_mm_s2 = servo_loop_torque_limit_mm_s2(loop)};
+    return (struct cycle){.limit_mm_s2 = takt_servo_loop_torque_limit_mm_s2(loop)};
 }
 
 /* For a command that moves at a velocity and changes it: by the loop's inertia, and against friction. */
@@ -96,7 +96,7 @@ static double forward_torque_mm_s2(const struct servo_loop *loop, double velocit
                                    double acceleration_mm_s2)
 {
     return loop->torque_forward_ratio * acceleration_mm_s2 +
-           friction_at(&loop->friction, velocity_mm_s) + loop->torque_offset_mm_s2;
+           takt_friction_at(&loop->friction, velocity_mm_s) + loop->torque_offset_mm_s2;
 }
 
 /* The same of a command for a position. */
@@ -138,7 +138,7 @@ static void step(struct servo_loop *loop, const struct cycle *c, double told_mm)
     turn(loop, control_velocity(loop, c, error_mm_s));
 }
 
-void servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycle_ns)
+void takt_servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycle_ns)
 {
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double velocity_mm_s = (command_mm - loop->command_mm) * loop->per_cycle_s;
@@ -151,19 +151,19 @@ void servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycl
     look(loop, cycle_ns);
 }
 
-void servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
-                             double end_mm, uint32_t cycle_ns)
+void takt_servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
+                                  double end_mm, uint32_t cycle_ns)
 {
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double place[3];
     for (uint32_t i = 0; i < loop->steps; i++) {
-        between_at(piece, i * loop->step_s * loop->per_cycle_s, place);
+        takt_between_at(piece, i * loop->step_s * loop->per_cycle_s, place);
         double velocity_mm_s = place[1] * loop->per_cycle_s;
         double acceleration_mm_s2 = place[2] * loop->per_cycle_s * loop->per_cycle_s;
         feed_forward(loop, &cycle, velocity_mm_s, acceleration_mm_s2);
         step(loop, &cycle, place[0]);
     }
-    between_at(piece, 1, place);
+    takt_between_at(piece, 1, place);
     loop->command_mm = end_mm;
     loop->command_velocity_mm_s = place[1] * loop->per_cycle_s;
     look(loop, cycle_ns);
@@ -176,7 +176,7 @@ static void stay_with_motor(struct servo_loop *loop, double velocity_mm_s)
     loop->command_velocity_mm_s = velocity_mm_s;
 }
 
-void servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cycle_ns)
+void takt_servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cycle_ns)
 {
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double acceleration_mm_s2 = (velocity_mm_s - loop->command_velocity_mm_s) * loop->per_cycle_s;
@@ -188,7 +188,7 @@ void servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cyc
     stay_with_motor(loop, velocity_mm_s);
 }
 
-void servo_loop_push(struct servo_loop *loop, double acceleration_mm_s2, uint32_t cycle_ns)
+void takt_servo_loop_push(struct servo_loop *loop, double acceleration_mm_s2, uint32_t cycle_ns)
 {
     const struct cycle cycle = begin_cycle(loop, cycle_ns);
     double limited_mm_s2 = maths_clamp(acceleration_mm_s2, -cycle.limit_mm_s2, cycle.limit_mm_s2);
@@ -200,7 +200,7 @@ void servo_loop_push(struct servo_loop *loop, double acceleration_mm_s2, uint32_
 }
 
 /* The velocity is that of the whole cycle: nobody controls it. */
-void servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns)
+void takt_servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns)
 {
     double before_mm = loop->measured_mm;
     (void)begin_cycle(loop, cycle_ns);
@@ -212,7 +212,7 @@ void servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns)
     stay_with_motor(loop, 0);
 }
 
-void servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm_s2)
+void takt_servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm_s2)
 {
     stay_with_motor(loop, loop->measured_velocity_mm_s);
     loop->brake_mm_s2 = deceleration_mm_s2;
@@ -239,30 +239,30 @@ static double slowed(double velocity_mm_s, double by_mm_s)
 }
 
 /* The command covers (v0 + v1) / 2 of a cycle while it slows from v0 to v1. */
-bool servo_loop_brake(struct servo_loop *loop, uint32_t cycle_ns)
+bool takt_servo_loop_brake(struct servo_loop *loop, uint32_t cycle_ns)
 {
     double cycle_s = cycle_ns * 1e-9;
     double before_mm = loop->measured_mm;
     double v0_mm_s = loop->command_velocity_mm_s;
     double v1_mm_s = slowed(v0_mm_s, loop->brake_mm_s2 * cycle_s);
     double way_mm = (v0_mm_s + v1_mm_s) / 2 * cycle_s;
-    servo_loop_follow(loop, loop->command_mm + way_mm, cycle_ns);
+    takt_servo_loop_follow(loop, loop->command_mm + way_mm, cycle_ns);
     loop->command_velocity_mm_s = v1_mm_s;
     return v1_mm_s == 0 && stands(loop, loop->measured_mm - before_mm);
 }
 
-void servo_loop_let_go(struct servo_loop *loop)
+void takt_servo_loop_let_go(struct servo_loop *loop)
 {
     stay_with_motor(loop, 0);
     loop->integral_mm_s2 = 0;
 }
 
-double servo_loop_following_error_mm(const struct servo_loop *loop)
+double takt_servo_loop_following_error_mm(const struct servo_loop *loop)
 {
     return loop->command_mm - loop->measured_mm;
 }
 
-double servo_loop_torque_ratio(const struct servo_loop *loop)
+double takt_servo_loop_torque_ratio(const struct servo_loop *loop)
 {
     return loop->torque_mm_s2 * loop->rated_per_mm_s2;
 }

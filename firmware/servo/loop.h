@@ -73,52 +73,52 @@ struct servo_loop {
 };
 
 /* The command is where the encoder says the motor is. motor must stay usable as long as the loop. */
-void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
-                     const struct motor_port *motor);
+void takt_servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
+                          const struct motor_port *motor);
 
 /* From now on it has gains, feed-forward and told inertia of config; motor and encoder stay as they are. */
-void servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config);
+void takt_servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config);
 
 /* Between two cycles something about the motor has changed at once: it is looked at anew. */
-void servo_loop_look(struct servo_loop *loop);
+void takt_servo_loop_look(struct servo_loop *loop);
 
 /* Cycles are cycle_ns long, > 0. */
 
 /* One cycle with torque, in which the command moves from where it is to command_mm at a constant velocity. */
-void servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycle_ns);
+void takt_servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycle_ns);
 
 /* The same along a piece of curve from where it is, over the part of the cycle; acceleration is fed forward all along it. */
-void servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
-                             double end_mm, uint32_t cycle_ns);
+void takt_servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
+                                  double end_mm, uint32_t cycle_ns);
 
 /* One cycle of the velocity loop alone: the command stays with the motor. */
-void servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cycle_ns);
+void takt_servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cycle_ns);
 
 /* One cycle with the torque for this acceleration, as far as there is so much; the command stays with the motor. */
-void servo_loop_push(struct servo_loop *loop, double acceleration_mm_s2, uint32_t cycle_ns);
+void takt_servo_loop_push(struct servo_loop *loop, double acceleration_mm_s2, uint32_t cycle_ns);
 
 /* One cycle without torque: the command stays with the motor. */
-void servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns);
+void takt_servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns);
 
 /*
- * Before the first servo_loop_brake: from here the motor is to stop by deceleration_mm_s2 (> 0), whatever it was told
+ * Before the first takt_servo_loop_brake: from here the motor is to stop by deceleration_mm_s2 (> 0), whatever it was told
  * before.
  */
-void servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm_s2);
+void takt_servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm_s2);
 
 /* One cycle of stopping: the command slows down and takes the motor with it. True: the motor stands. */
-bool servo_loop_brake(struct servo_loop *loop, uint32_t cycle_ns);
+bool takt_servo_loop_brake(struct servo_loop *loop, uint32_t cycle_ns);
 
 /* The motor stands at something: the command comes back to it, and nothing pushes any more. */
-void servo_loop_let_go(struct servo_loop *loop);
+void takt_servo_loop_let_go(struct servo_loop *loop);
 
 /* Acceleration by all the torque that it has, has left, and is allowed. */
-double servo_loop_torque_limit_mm_s2(const struct servo_loop *loop);
+double takt_servo_loop_torque_limit_mm_s2(const struct servo_loop *loop);
 
 /* command - measured position. */
-double servo_loop_following_error_mm(const struct servo_loop *loop);
+double takt_servo_loop_following_error_mm(const struct servo_loop *loop);
 
 /* Torque of the motor by its rated torque. */
-double servo_loop_torque_ratio(const struct servo_loop *loop);
+double takt_servo_loop_torque_ratio(const struct servo_loop *loop);
 
 #endif

@@ -36,7 +36,7 @@
 static uint32_t identity(struct servo *drive, unsigned part)
 {
     uint32_t value = 0;
-    (void)servo_read_object(drive, 0x10180020u | (part + 1) << 8, &value);
+    (void)takt_servo_read_object(drive, 0x10180020u | (part + 1) << 8, &value);
     return value;
 }
 
@@ -45,7 +45,7 @@ static void answer(struct servo *drive, unsigned command, uint32_t value)
     struct can_frame frame = {.id = LSS_ANSWER_COB_ID, .length = CAN_CLASSIC_MAX};
     frame.data[0] = (uint8_t)command;
     little_endian_write32(frame.data + 1, value);
-    (void)servo_send(drive, SERVO_FRAME_SDO, &frame);
+    (void)takt_servo_send(drive, SERVO_FRAME_SDO, &frame);
 }
 
 /* The parts must come one after the other, and be those of this node. */
@@ -141,7 +141,7 @@ static void take_configuration(struct servo *drive, unsigned command, uint8_t va
     }
 }
 
-void servo_take_lss(struct servo *drive, const struct can_frame *frame)
+void takt_servo_take_lss(struct servo *drive, const struct can_frame *frame)
 {
     const uint8_t *data = frame->data;
     const uint32_t value = little_endian_read32(data + 1);
@@ -170,13 +170,13 @@ static void renumber(const struct servo *drive, struct drive_objects *objects, u
         const struct object_row *row = &dictionary->row[i];
         uint32_t initial = (uint32_t)row->initial;
         if (row->flags & OBJECT_NODE_ID &&
-            object_read(row, objects) == initial + drive->config.node)
-            object_write(row, objects, initial + to);
+            takt_object_read(row, objects) == initial + drive->config.node)
+            takt_object_write(row, objects, initial + to);
     }
 }
 
 /* A reset: the node id that has been configured, or at one of the whole node the one that has been stored. */
-void servo_apply_lss(struct servo *drive, bool whole_node)
+void takt_servo_apply_lss(struct servo *drive, bool whole_node)
 {
     struct drive_lss *lss = &drive->lss;
     const uint8_t node = whole_node ? lss->stored : lss->node;

@@ -17,7 +17,7 @@ static bool make_pitch(const struct servo *drive, unsigned points, struct pitch 
     pitch->steps_per_mm = drive->increments_per_mm / s->pitch_distance;
     for (unsigned i = 0; i < points; i++)
         pitch->value_mm[i] = s->pitch_nm[i] * mm_per_nm;
-    return pitch_make(pitch);
+    return takt_pitch_make(pitch);
 }
 
 /* Without torque the command stays with the motor: nothing jumps but what is said of its position. */
@@ -28,8 +28,8 @@ static bool may_change(const struct servo *drive)
     return drive->nmt == NMT_PREOPERATIONAL && !has_torque;
 }
 
-uint32_t servo_check_compensation(const struct servo *drive, const struct object_row *row,
-                                  uint32_t value)
+uint32_t takt_servo_check_compensation(const struct servo *drive, const struct object_row *row,
+                                       uint32_t value)
 {
     struct pitch pitch;
     bool is_number = row->index == 0x2010 && row->sub == 1;
@@ -42,27 +42,27 @@ uint32_t servo_check_compensation(const struct servo *drive, const struct object
     return SDO_ABORT_NONE;
 }
 
-void servo_take_origin(struct servo *drive)
+void takt_servo_take_origin(struct servo *drive)
 {
     struct servo_loop *loop = &drive->loop;
     drive->compensation.is_homed = drive->homing.is_homed;
     drive->compensation.origin_mm = drive->origin_mm;
-    double axis_mm = compensation_get_axis_mm(&drive->compensation);
+    double axis_mm = takt_compensation_get_axis_mm(&drive->compensation);
     loop->command_mm += axis_mm - loop->measured_mm;
     loop->measured_mm = axis_mm;
 }
 
 /* Values that have been stored by another hand need not make sense: then there is no error. */
-void servo_derive_compensation(struct servo *drive)
+void takt_servo_derive_compensation(struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     (void)make_pitch(drive, s->pitch_points, &drive->compensation.pitch);
-    compensation_set_backlash(&drive->compensation, s->backlash_nm * MM_PER_NM);
-    servo_take_origin(drive);
+    takt_compensation_set_backlash(&drive->compensation, s->backlash_nm * MM_PER_NM);
+    takt_servo_take_origin(drive);
 }
 
 /* Nobody tells it to go by less than an increment, and nobody sees less than a step of the encoder. */
-void servo_note_way(struct servo *drive)
+void takt_servo_note_way(struct servo *drive)
 {
     const struct servo_loop *loop = &drive->loop;
     if (drive->compensation.backlash_mm == 0)
@@ -70,8 +70,8 @@ void servo_note_way(struct servo *drive)
     const struct compensation_way way = {
         .way_mm = loop->command_velocity_mm_s * loop->cycle_s,
         .resolution_mm = maths_max(1 / servo_scale(drive), loop->encoder_step_mm),
-        .acceleration_mm_s2 = servo_profile_acceleration_mm_s2(drive),
+        .acceleration_mm_s2 = takt_servo_profile_acceleration_mm_s2(drive),
         .step_s = loop->step_s,
     };
-    compensation_follow(&drive->compensation, &way);
+    takt_compensation_follow(&drive->compensation, &way);
 }

@@ -24,13 +24,13 @@
 
 #define INCREMENTS_MAX 2147483647.0
 
-int32_t servo_increments(const struct servo *drive, double position_mm)
+int32_t takt_servo_increments(const struct servo *drive, double position_mm)
 {
-    double increments = maths_round(position_mm * drive->increments_per_mm);
+    double increments = takt_maths_round(position_mm * drive->increments_per_mm);
     return (int32_t)maths_clamp(increments, -INCREMENTS_MAX, INCREMENTS_MAX);
 }
 
-double servo_actual_mm(const struct servo *drive)
+double takt_servo_actual_mm(const struct servo *drive)
 {
     return drive->loop.measured_mm - drive->origin_mm;
 }
@@ -40,37 +40,37 @@ static double least_mm(const struct servo *drive, uint32_t a, uint32_t b)
     return (a < b ? a : b) / servo_velocity_scale(drive);
 }
 
-double servo_profile_acceleration_mm_s2(const struct servo *drive)
+double takt_servo_profile_acceleration_mm_s2(const struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     return least_mm(drive, s->profile_acceleration, s->max_acceleration);
 }
 
-double servo_profile_deceleration_mm_s2(const struct servo *drive)
+double takt_servo_profile_deceleration_mm_s2(const struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     return least_mm(drive, s->profile_deceleration, s->max_deceleration);
 }
 
-double servo_motor_velocity_max_mm_s(const struct servo *drive)
+double takt_servo_motor_velocity_max_mm_s(const struct servo *drive)
 {
     return drive->objects.settings.max_motor_speed_rpm / SECONDS_PER_MIN *
            drive->config.loop.travel_per_revolution_mm;
 }
 
-double servo_profile_velocity_max_mm_s(const struct servo *drive)
+double takt_servo_profile_velocity_max_mm_s(const struct servo *drive)
 {
     return maths_min(drive->objects.settings.max_profile_velocity / servo_velocity_scale(drive),
-                     servo_motor_velocity_max_mm_s(drive));
+                     takt_servo_motor_velocity_max_mm_s(drive));
 }
 /*
  * What the target of an earlier run was is forgotten: the drive stands, or slows down to stand,
  * until it gets a new one.
  */
-void servo_hold(struct servo *drive)
+void takt_servo_hold(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
-    int32_t here_inc = servo_increments(drive, drive->loop.command_mm - drive->origin_mm);
+    int32_t here_inc = takt_servo_increments(drive, drive->loop.command_mm - drive->origin_mm);
     p->target_position = here_inc;
     p->interpolation_target = here_inc;
     drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
@@ -92,20 +92,21 @@ static void move_command(struct servo *drive, double velocity_mm_s, uint32_t cyc
 {
     double mean_mm_s = (drive->velocity_mm_s + velocity_mm_s) / 2;
     drive->velocity_mm_s = velocity_mm_s;
-    servo_loop_follow(&drive->loop, drive->loop.command_mm + mean_mm_s * (cycle_ns * 1e-9),
-                      cycle_ns);
+    takt_servo_loop_follow(&drive->loop, drive->loop.command_mm + mean_mm_s * (cycle_ns * 1e-9),
+                           cycle_ns);
 }
 
-void servo_run_at(struct servo *drive, double velocity_mm_s, double acceleration_mm_s2,
-                  uint32_t cycle_ns)
+void takt_servo_run_at(struct servo *drive, double velocity_mm_s, double acceleration_mm_s2,
+                       uint32_t cycle_ns)
 {
     double by_mm_s = acceleration_mm_s2 * (cycle_ns * 1e-9);
-    move_command(drive, course_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s), cycle_ns);
+    move_command(drive, takt_course_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s),
+                 cycle_ns);
 }
 
-bool servo_slow(struct servo *drive, double deceleration_mm_s2, uint32_t cycle_ns)
+bool takt_servo_slow(struct servo *drive, double deceleration_mm_s2, uint32_t cycle_ns)
 {
-    servo_run_at(drive, 0, deceleration_mm_s2, cycle_ns);
+    takt_servo_run_at(drive, 0, deceleration_mm_s2, cycle_ns);
     return drive->velocity_mm_s == 0;
 }
 
@@ -117,11 +118,11 @@ static struct course_ramps profile_ramps(const struct servo *drive)
     const struct drive_settings *s = &drive->objects.settings;
     double per_mm = servo_velocity_scale(drive);
     double velocity_mm_s =
-        maths_min(s->profile_velocity / per_mm, servo_profile_velocity_max_mm_s(drive));
+        maths_min(s->profile_velocity / per_mm, takt_servo_profile_velocity_max_mm_s(drive));
     double end_mm_s = drive->setpoints.has_next ? s->end_velocity / per_mm : 0;
     return (struct course_ramps){
-        velocity_mm_s, servo_profile_acceleration_mm_s2(drive),
-        servo_profile_deceleration_mm_s2(drive), maths_min(end_mm_s, velocity_mm_s),
+        velocity_mm_s, takt_servo_profile_acceleration_mm_s2(drive),
+        takt_servo_profile_deceleration_mm_s2(drive), maths_min(end_mm_s, velocity_mm_s),
         s->motion_profile_type == PROFILE_JERK_LIMITED ? s->profile_jerk / per_mm : 0};
 }
 
@@ -147,7 +148,7 @@ static void activate(struct servo *drive, int64_t target_inc)
     s->has_next = false;
     s->is_reached = false;
     s->in_window_ns = 0;
-    servo_tell(drive, DRIVE_EVENT_SETPOINT, (uint32_t)target_inc, 0);
+    takt_servo_tell(drive, DRIVE_EVENT_SETPOINT, (uint32_t)target_inc, 0);
 }
 
 /* A relative target counts from the one before. One target may wait until the active is reached. */
@@ -175,7 +176,8 @@ static void release_setpoint(struct servo *drive)
         drive->setpoints.is_acknowledged = false;
 }
 
-void servo_note_reached(struct servo *drive, bool is_inside, uint16_t time_ms, uint32_t cycle_ns)
+void takt_servo_note_reached(struct servo *drive, bool is_inside, uint16_t time_ms,
+                             uint32_t cycle_ns)
 {
     struct drive_setpoints *s = &drive->setpoints;
     s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
@@ -189,7 +191,7 @@ static void check_reached(struct servo *drive, double target_mm, uint32_t cycle_
     double window_mm = o->position_window / servo_scale(drive);
     bool is_inside = o->position_window == WINDOW_ANY ||
                      maths_abs(target_mm - drive->loop.measured_mm) <= window_mm;
-    servo_note_reached(drive, is_inside, o->position_window_ms, cycle_ns);
+    takt_servo_note_reached(drive, is_inside, o->position_window_ms, cycle_ns);
 }
 
 /* With an end velocity the target is passed on the way to the next one, in the cycle that would reach it. */
@@ -205,7 +207,7 @@ static bool passes_target(const struct course *course, double target_mm,
 static struct course trapezoid(const struct servo *drive, const struct course *command,
                                const struct course_ramps *ramps)
 {
-    bool is_own = ramps->jerk_mm_s3 == 0 || course_is_elsewhere(&drive->average, command);
+    bool is_own = ramps->jerk_mm_s3 == 0 || takt_course_is_elsewhere(&drive->average, command);
     return is_own ? *command : drive->average.course;
 }
 
@@ -214,11 +216,11 @@ static void run_profile(struct servo *drive, struct course *command, double targ
                         const struct course_ramps *ramps, uint32_t cycle_ns)
 {
     if (ramps->jerk_mm_s3 > 0)
-        course_step_average(&drive->average, command, target_mm, ramps, cycle_ns * 1e-9);
+        takt_course_step_average(&drive->average, command, target_mm, ramps, cycle_ns * 1e-9);
     else
-        course_step(command, target_mm, ramps, cycle_ns * 1e-9);
+        takt_course_step(command, target_mm, ramps, cycle_ns * 1e-9);
     drive->velocity_mm_s = command->velocity_mm_s;
-    servo_loop_follow(&drive->loop, command->at_mm, cycle_ns);
+    takt_servo_loop_follow(&drive->loop, command->at_mm, cycle_ns);
 }
 
 static void run_position(struct servo *drive, uint32_t cycle_ns)
@@ -251,8 +253,8 @@ static uint32_t period_cycles(const struct servo *drive, uint32_t cycle_ns)
 static void follow_smoothly(struct servo *drive, double command_mm, uint32_t cycle_ns)
 {
     double piece[BETWEEN_COEFFICIENTS];
-    between_take(&drive->between, drive->loop.command_mm, command_mm, piece);
-    servo_loop_follow_piece(&drive->loop, piece, drive->between.target_mm[2], cycle_ns);
+    takt_between_take(&drive->between, drive->loop.command_mm, command_mm, piece);
+    takt_servo_loop_follow_piece(&drive->loop, piece, drive->between.target_mm[2], cycle_ns);
 }
 
 /* The command goes to the target in a straight line, within the period after it has changed. */
@@ -272,11 +274,11 @@ static void run_interpolated(struct servo *drive, double target_inc, uint32_t cy
     if (drive->objects.settings.interpolation_submode == INTERPOLATION_SMOOTH)
         follow_smoothly(drive, command_mm, cycle_ns);
     else
-        servo_loop_follow(&drive->loop, command_mm, cycle_ns);
+        takt_servo_loop_follow(&drive->loop, command_mm, cycle_ns);
 }
 
 /* Objects 60B1 and 60B2. */
-void servo_set_offsets(struct servo *drive)
+void takt_servo_set_offsets(struct servo *drive)
 {
     const struct drive_process *p = &drive->objects.process;
     struct servo_loop *loop = &drive->loop;
@@ -291,7 +293,7 @@ void servo_set_offsets(struct servo *drive)
 static void run_cyclic(struct servo *drive, uint32_t cycle_ns)
 {
     const struct drive_process *p = &drive->objects.process;
-    servo_set_offsets(drive);
+    takt_servo_set_offsets(drive);
     run_interpolated(drive, (double)p->target_position + p->position_offset, cycle_ns);
 }
 
@@ -299,7 +301,7 @@ static void run_ip(struct servo *drive, uint32_t cycle_ns)
 {
     const struct drive_process *p = &drive->objects.process;
     if (!drive->interpolates) {
-        (void)servo_slow(drive, servo_profile_deceleration_mm_s2(drive), cycle_ns);
+        (void)takt_servo_slow(drive, takt_servo_profile_deceleration_mm_s2(drive), cycle_ns);
         return;
     }
     run_interpolated(drive, p->interpolation_target, cycle_ns);
@@ -313,8 +315,8 @@ static void run_halt(struct servo *drive, uint32_t cycle_ns)
 {
     bool is_quick = drive->objects.settings.halt_option == HALT_QUICK_STOP;
     double deceleration_mm_s2 =
-        is_quick ? drive->quick_stop_mm_s2 : servo_profile_deceleration_mm_s2(drive);
-    (void)servo_slow(drive, deceleration_mm_s2, cycle_ns);
+        is_quick ? drive->quick_stop_mm_s2 : takt_servo_profile_deceleration_mm_s2(drive);
+    (void)takt_servo_slow(drive, deceleration_mm_s2, cycle_ns);
     release_setpoint(drive);
 }
 
@@ -324,9 +326,9 @@ static bool run_cyclic_mode(struct servo *drive, int8_t mode, uint32_t cycle_ns)
     if (mode == CIA402_MODE_CYCLIC_SYNC_POSITION)
         run_cyclic(drive, cycle_ns);
     else if (mode == CIA402_MODE_CYCLIC_SYNC_VELOCITY)
-        servo_run_cyclic_velocity(drive, cycle_ns);
+        takt_servo_run_cyclic_velocity(drive, cycle_ns);
     else if (mode == CIA402_MODE_CYCLIC_SYNC_TORQUE)
-        servo_run_cyclic_torque(drive, cycle_ns);
+        takt_servo_run_cyclic_torque(drive, cycle_ns);
     else
         return false;
     return true;
@@ -336,22 +338,22 @@ static bool run_cyclic_mode(struct servo *drive, int8_t mode, uint32_t cycle_ns)
 static void run_other_mode(struct servo *drive, int8_t mode, uint32_t cycle_ns)
 {
     if (mode == CIA402_MODE_PROFILE_TORQUE)
-        servo_run_profile_torque(drive, cycle_ns);
+        takt_servo_run_profile_torque(drive, cycle_ns);
     else if (drive->is_halted)
         run_halt(drive, cycle_ns);
     else if (mode == CIA402_MODE_PROFILE_POSITION)
         run_position(drive, cycle_ns);
     else if (mode == CIA402_MODE_PROFILE_VELOCITY)
-        servo_run_profile_velocity(drive, cycle_ns);
+        takt_servo_run_profile_velocity(drive, cycle_ns);
     else if (mode == CIA402_MODE_HOMING)
-        servo_run_homing(drive, cycle_ns);
+        takt_servo_run_homing(drive, cycle_ns);
     else if (mode == CIA402_MODE_INTERPOLATED_POSITION)
         run_ip(drive, cycle_ns);
     else
-        (void)servo_slow(drive, servo_profile_deceleration_mm_s2(drive), cycle_ns);
+        (void)takt_servo_slow(drive, takt_servo_profile_deceleration_mm_s2(drive), cycle_ns);
 }
 
-void servo_run_mode(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_run_mode(struct servo *drive, uint32_t cycle_ns)
 {
     int8_t mode = drive->objects.process.mode_display;
     if (!run_cyclic_mode(drive, mode, cycle_ns))
@@ -368,7 +370,7 @@ static void take_interpolation(struct servo *drive, bool enables)
     drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
 }
 
-void servo_take_mode_controlword(struct servo *drive, uint16_t before, uint16_t controlword)
+void takt_servo_take_mode_controlword(struct servo *drive, uint16_t before, uint16_t controlword)
 {
     bool is_set = controlword & CONTROL_BIT_4;
     bool rises = is_set && !(before & CONTROL_BIT_4);
@@ -381,9 +383,9 @@ void servo_take_mode_controlword(struct servo *drive, uint16_t before, uint16_t 
         break;
     case CIA402_MODE_HOMING:
         if (rises && is_enabled)
-            servo_begin_homing(drive);
+            takt_servo_begin_homing(drive);
         else if (!is_set)
-            servo_interrupt_homing(drive);
+            takt_servo_interrupt_homing(drive);
         break;
     case CIA402_MODE_INTERPOLATED_POSITION:
         take_interpolation(drive, is_set && is_enabled);
@@ -424,7 +426,7 @@ static uint16_t velocity_status(const struct servo *drive)
     return (uint16_t)((is_reached ? STATUS_REACHED : 0) | (stands ? STATUS_BIT_12 : 0));
 }
 
-uint16_t servo_mode_status(const struct servo *drive)
+uint16_t takt_servo_mode_status(const struct servo *drive)
 {
     bool is_enabled = drive->state == CIA402_ENABLED && !drive->is_leaving;
     switch (drive->objects.process.mode_display) {

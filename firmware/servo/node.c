@@ -23,7 +23,7 @@ static bool is_dumb(const struct servo *drive, const struct can_frame *frame)
 }
 
 /* A refused frame is lost, as in a node whose transmit buffers are full; the bus counts it. */
-bool servo_send(struct servo *drive, enum servo_frame kind, const struct can_frame *frame)
+bool takt_servo_send(struct servo *drive, enum servo_frame kind, const struct can_frame *frame)
 {
     const struct servo_meddler *m = &drive->meddler;
     if (is_dumb(drive, frame) || (m->holds_back != NULL && m->holds_back(m->context, kind)))
@@ -33,11 +33,11 @@ bool servo_send(struct servo *drive, enum servo_frame kind, const struct can_fra
 
 static bool send_sdo(void *context, const struct can_frame *frame)
 {
-    return servo_send(context, SERVO_FRAME_SDO, frame);
+    return takt_servo_send(context, SERVO_FRAME_SDO, frame);
 }
 
-void servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t first,
-                uint32_t second)
+void takt_servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t first,
+                     uint32_t second)
 {
     const struct drive_event event = {.kind = kind,
                                       .time_ns = drive->now_ns,
@@ -48,7 +48,7 @@ void servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t 
         drive->observer.on_event(drive->observer.context, &event);
 }
 
-/* Of an object that says more about it in its upper bits. */
+/* Identifier in an object that says more about it in its upper bits. */
 static unsigned identifier_of(uint32_t cob_id)
 {
     return cob_id & CAN_ID_MASK;
@@ -60,7 +60,7 @@ static void accept(struct servo *drive, uint32_t cob_id)
     drive->accepts[id >> 5] |= 1u << (id & 31);
 }
 
-void servo_set_filter(struct servo *drive)
+void takt_servo_set_filter(struct servo *drive)
 {
     const struct drive_communication *c = &drive->objects.communication;
     memset(drive->accepts, 0, sizeof drive->accepts);
@@ -91,65 +91,66 @@ static void set_target_pdo(struct servo *drive, const struct pdo *target)
 
 static void init_loop(struct servo *drive)
 {
-    const struct motor_port axis = compensation_get_port(&drive->compensation);
-    servo_loop_init(&drive->loop, &drive->config.loop, &axis);
+    const struct motor_port axis = takt_compensation_get_port(&drive->compensation);
+    takt_servo_loop_init(&drive->loop, &drive->config.loop, &axis);
 }
 
-void servo_init(struct servo *drive, const struct servo_config *config, const struct pdo *target,
-                const struct can_port *port, const struct motor_port *motor)
+void takt_servo_init(struct servo *drive, const struct servo_config *config,
+                     const struct pdo *target, const struct can_port *port,
+                     const struct motor_port *motor)
 {
-    const struct sdo_server_owner owner = {.read = servo_read_sdo,
-                                           .may_write = servo_may_write_sdo,
-                                           .write = servo_write_sdo,
+    const struct sdo_server_owner owner = {.read = takt_servo_read_sdo,
+                                           .may_write = takt_servo_may_write_sdo,
+                                           .write = takt_servo_write_sdo,
                                            .send = send_sdo,
                                            .context = drive};
     memset(drive, 0, sizeof *drive);
     drive->config = *config;
     drive->port = *port;
-    drive->dictionary = config->is_io ? &dictionary_io : &dictionary_own;
+    drive->dictionary = config->is_io ? &takt_dictionary_io : &takt_dictionary_own;
     if (config->dictionary != NULL)
         drive->dictionary = config->dictionary;
     drive->nmt = NMT_BOOTED;
     drive->number = config->node;
     drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
     drive->lss.is_nameless = config->is_nameless;
-    compensation_init(&drive->compensation, motor);
+    takt_compensation_init(&drive->compensation, motor);
     if (!config->is_io)
         init_loop(drive);
-    sdo_server_init(&drive->sdo, config->node, &owner);
-    servo_init_objects(drive);
-    if (target && drive->dictionary == &dictionary_own)
+    takt_sdo_server_init(&drive->sdo, config->node, &owner);
+    takt_servo_init_objects(drive);
+    if (target && drive->dictionary == &takt_dictionary_own)
         set_target_pdo(drive, target);
     drive->initial = drive->stored = drive->objects;
-    servo_derive(drive);
+    takt_servo_derive(drive);
     drive->homing.is_homed = config->is_absolute;
-    servo_derive_compensation(drive);
-    servo_update_pdos(drive);
-    servo_reset_profile(drive);
+    takt_servo_derive_compensation(drive);
+    takt_servo_update_pdos(drive);
+    takt_servo_reset_profile(drive);
 }
 
-void servo_observe(struct servo *drive, const struct drive_observer *observer)
+void takt_servo_observe(struct servo *drive, const struct drive_observer *observer)
 {
     drive->observer = *observer;
 }
 
-void servo_set_eds(struct servo *drive, const char *eds, size_t length)
+void takt_servo_set_eds(struct servo *drive, const char *eds, size_t length)
 {
     drive->eds = eds;
     drive->eds_length = length;
 }
 
-void servo_meddle(struct servo *drive, const struct servo_meddler *meddler)
+void takt_servo_meddle(struct servo *drive, const struct servo_meddler *meddler)
 {
     drive->meddler = *meddler;
 }
 
-void servo_keep(struct servo *drive, const struct drive_keeper *keeper)
+void takt_servo_keep(struct servo *drive, const struct drive_keeper *keeper)
 {
     drive->keeper = *keeper;
 }
 
-void servo_look_soon(struct servo *drive)
+void takt_servo_look_soon(struct servo *drive)
 {
     drive->due_ns = 0;
 }
@@ -157,24 +158,24 @@ void servo_look_soon(struct servo *drive)
 static void send_heartbeat(struct servo *drive, enum nmt_state state)
 {
     struct can_frame frame;
-    nmt_write_heartbeat(&frame, drive->config.node, state);
-    (void)servo_send(drive, SERVO_FRAME_HEARTBEAT, &frame);
+    takt_nmt_write_heartbeat(&frame, drive->config.node, state);
+    (void)takt_servo_send(drive, SERVO_FRAME_HEARTBEAT, &frame);
 }
 
 /* The first one comes at once. */
-void servo_restart_heartbeat(struct servo *drive)
+void takt_servo_restart_heartbeat(struct servo *drive)
 {
     bool produces = drive->objects.communication.producer_heartbeat_ms != 0;
     drive->heartbeat_ns = produces ? drive->now_ns : DRIVE_NEVER;
-    servo_look_soon(drive);
+    takt_servo_look_soon(drive);
 }
 
 /* A heartbeat is watched from the first that comes (CiA 301, 7.2.8.3.2.2). */
-void servo_restart_consumer(struct servo *drive, unsigned i)
+void takt_servo_restart_consumer(struct servo *drive, unsigned i)
 {
     drive->consumer_ns[i] = DRIVE_NEVER;
-    servo_set_filter(drive);
-    servo_look_soon(drive);
+    takt_servo_set_filter(drive);
+    takt_servo_look_soon(drive);
 }
 
 static void restart_communication(struct servo *drive)
@@ -184,26 +185,26 @@ static void restart_communication(struct servo *drive)
     drive->emcy_ns = 0;
     drive->sync_lost_ns = drive->guard_lost_ns = DRIVE_NEVER;
     drive->guard_toggle = 0;
-    sdo_server_reset(&drive->sdo);
-    servo_update_pdos(drive);
+    takt_sdo_server_reset(&drive->sdo);
+    takt_servo_update_pdos(drive);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
-        servo_restart_consumer(drive, i);
-    servo_restart_heartbeat(drive);
+        takt_servo_restart_consumer(drive, i);
+    takt_servo_restart_heartbeat(drive);
 }
 
 static void enter_nmt_state(struct servo *drive, enum nmt_state next)
 {
     if (next != drive->nmt)
-        servo_tell(drive, DRIVE_EVENT_NMT, (uint32_t)next, 0);
+        takt_servo_tell(drive, DRIVE_EVENT_NMT, (uint32_t)next, 0);
     bool starts = next == NMT_OPERATIONAL && drive->nmt != NMT_OPERATIONAL;
     drive->nmt = next;
     if (starts)
-        servo_start_pdos(drive);
+        takt_servo_start_pdos(drive);
     if (next != NMT_OPERATIONAL)
-        servo_lose_connection(drive);
+        takt_servo_lose_connection(drive);
 }
 
-void servo_boot(struct servo *drive)
+void takt_servo_boot(struct servo *drive)
 {
     drive->nmt = NMT_BOOTED;
     drive->boot_ns = 0;
@@ -211,29 +212,29 @@ void servo_boot(struct servo *drive)
     send_heartbeat(drive, NMT_BOOTED);
     if (drive->lss.is_nameless)
         return; /* it stays as it has booted */
-    servo_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
+    takt_servo_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
     drive->nmt = NMT_PREOPERATIONAL;
 }
 
 /* What has been set and not stored is forgotten. */
 static void reset(struct servo *drive, bool whole_node)
 {
-    servo_lose_connection(drive);
-    servo_apply_lss(drive, whole_node);
-    servo_restore(drive, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
+    takt_servo_lose_connection(drive);
+    takt_servo_apply_lss(drive, whole_node);
+    takt_servo_restore(drive, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
     if (whole_node) {
-        servo_clear_history(drive);
-        servo_reset_profile(drive);
+        takt_servo_clear_history(drive);
+        takt_servo_reset_profile(drive);
     }
     drive->nmt = NMT_BOOTED;
     drive->requests.count = 0;
     drive->boot_ns = drive->now_ns + drive->config.boot_us * (uint64_t)MICROSECOND_NS;
     if (drive->boot_ns == drive->now_ns)
-        servo_boot(drive);
-    servo_look_soon(drive);
+        takt_servo_boot(drive);
+    takt_servo_look_soon(drive);
 }
 
-void servo_reboot(struct servo *drive)
+void takt_servo_reboot(struct servo *drive)
 {
     reset(drive, true);
 }
@@ -242,30 +243,30 @@ static void take_nmt_command(struct servo *drive, const struct can_frame *frame)
 {
     enum nmt_command command;
     uint8_t node;
-    if (!nmt_read_command(frame, &command, &node))
+    if (!takt_nmt_read_command(frame, &command, &node))
         return;
     if (node != NMT_ALL_NODES && (node != drive->config.node || drive->lss.is_nameless))
         return;
     if (command == NMT_RESET_NODE || command == NMT_RESET_COMMUNICATION)
         reset(drive, command == NMT_RESET_NODE);
     else if (!drive->lss.is_nameless)
-        enter_nmt_state(drive, nmt_next_state(command));
+        enter_nmt_state(drive, takt_nmt_next_state(command));
 }
 
 static void take_heartbeat(struct servo *drive, const struct can_frame *frame)
 {
     uint8_t node;
     enum nmt_state state;
-    if (!nmt_read_heartbeat(frame, &node, &state))
+    if (!takt_nmt_read_heartbeat(frame, &node, &state))
         return;
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
         uint32_t watched = drive->objects.communication.consumer_heartbeat[i];
         if ((watched >> 16 & NODE_ID_MASK) != node || (watched & 0xFFFF) == 0)
             continue;
         drive->consumer_ns[i] = drive->now_ns + (uint64_t)(watched & 0xFFFF) * MILLISECOND_NS;
-        servo_look_soon(drive);
+        takt_servo_look_soon(drive);
         if (drive->communication_error == EMCY_HEARTBEAT)
-            servo_set_communication_error(drive, EMCY_NONE);
+            takt_servo_set_communication_error(drive, EMCY_NONE);
     }
 }
 
@@ -280,7 +281,7 @@ static bool can_be_guarded(const struct servo *drive)
 {
     bool has_index;
     return drive->objects.communication.producer_heartbeat_ms == 0 &&
-           dictionary_find(drive->dictionary, 0x100C, 0, &has_index) != NULL;
+           takt_dictionary_find(drive->dictionary, 0x100C, 0, &has_index) != NULL;
 }
 
 /*
@@ -293,15 +294,15 @@ static void take_guard(struct servo *drive)
     struct can_frame frame;
     if (!can_be_guarded(drive))
         return;
-    nmt_write_heartbeat(&frame, drive->config.node, drive->nmt);
+    takt_nmt_write_heartbeat(&frame, drive->config.node, drive->nmt);
     frame.data[0] |= drive->guard_toggle;
     drive->guard_toggle ^= NMT_TOGGLE;
-    (void)servo_send(drive, SERVO_FRAME_HEARTBEAT, &frame);
+    (void)takt_servo_send(drive, SERVO_FRAME_HEARTBEAT, &frame);
     drive->guard_lost_ns =
         life_ms != 0 ? drive->now_ns + (uint64_t)life_ms * MILLISECOND_NS : DRIVE_NEVER;
-    servo_look_soon(drive);
+    takt_servo_look_soon(drive);
     if (drive->communication_error == EMCY_HEARTBEAT)
-        servo_set_communication_error(drive, EMCY_NONE);
+        takt_servo_set_communication_error(drive, EMCY_NONE);
 }
 
 /*
@@ -314,16 +315,16 @@ static void take_sync(struct servo *drive, const struct can_frame *frame)
         return;
     drive->sync_ns = drive->heard_ns;
     if (drive->communication_error == EMCY_SYNC)
-        servo_set_communication_error(drive, EMCY_NONE);
+        takt_servo_set_communication_error(drive, EMCY_NONE);
     if (period_ns != 0) {
         if (drive->sync_lost_ns == DRIVE_NEVER)
-            servo_look_soon(drive);
+            takt_servo_look_soon(drive);
         drive->sync_lost_ns = drive->now_ns + SYNC_LOST_PERIODS * period_ns;
     }
     if (drive->nmt != NMT_OPERATIONAL)
         return;
-    servo_apply_held(drive);
-    servo_send_synchronous(drive, frame);
+    takt_servo_apply_held(drive);
+    takt_servo_send_synchronous(drive, frame);
 }
 
 /* Requests wait in a row; those for which there is no room are lost. */
@@ -331,7 +332,7 @@ static void take_request(struct servo *drive, const struct can_frame *frame)
 {
     struct drive_requests *r = &drive->requests;
     if (drive->config.sdo_us == 0) {
-        sdo_server_take(&drive->sdo, frame);
+        takt_sdo_server_take(&drive->sdo, frame);
         return;
     }
     if (r->count == SERVO_REQUESTS)
@@ -339,7 +340,7 @@ static void take_request(struct servo *drive, const struct can_frame *frame)
     if (r->count == 0)
         r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
     r->frame[r->count++] = *frame;
-    servo_look_soon(drive);
+    takt_servo_look_soon(drive);
 }
 
 static void answer_request(struct servo *drive)
@@ -347,7 +348,7 @@ static void answer_request(struct servo *drive)
     struct drive_requests *r = &drive->requests;
     if (r->count == 0 || drive->now_ns < r->due_ns)
         return;
-    sdo_server_take(&drive->sdo, &r->frame[0]);
+    takt_sdo_server_take(&drive->sdo, &r->frame[0]);
     r->count--;
     memmove(r->frame, r->frame + 1, r->count * sizeof r->frame[0]);
     r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
@@ -358,24 +359,24 @@ static void answer_request(struct servo *drive)
 static void take_time(struct servo *drive, const struct can_frame *frame)
 {
     struct time_stamp time;
-    if (drive->nmt == NMT_STOPPED || !time_stamp_read(frame, &time))
+    if (drive->nmt == NMT_STOPPED || !takt_time_stamp_read(frame, &time))
         return;
     drive->time = time;
     drive->time_ns = drive->now_ns;
-    servo_tell(drive, DRIVE_EVENT_TIME, time.ms, time.days);
+    takt_servo_tell(drive, DRIVE_EVENT_TIME, time.ms, time.days);
 }
 
-struct time_stamp servo_time_of_day(const struct servo *drive)
+struct time_stamp takt_servo_time_of_day(const struct servo *drive)
 {
-    return time_stamp_add(drive->time, (drive->now_ns - drive->time_ns) / MILLISECOND_NS);
+    return takt_time_stamp_add(drive->time, (drive->now_ns - drive->time_ns) / MILLISECOND_NS);
 }
 
-uint32_t servo_high_resolution_us(const struct servo *drive)
+uint32_t takt_servo_high_resolution_us(const struct servo *drive)
 {
     return (uint32_t)(drive->now_ns / MICROSECOND_NS) + drive->clock_us;
 }
 
-void servo_set_high_resolution_us(struct servo *drive, uint32_t now_us)
+void takt_servo_set_high_resolution_us(struct servo *drive, uint32_t now_us)
 {
     drive->clock_us = now_us - (uint32_t)(drive->now_ns / MICROSECOND_NS);
 }
@@ -400,14 +401,14 @@ static void take_other(struct servo *drive, const struct can_frame *frame)
     }
 }
 
-bool servo_accepts(const struct servo *drive, const struct can_frame *frame)
+bool takt_servo_accepts(const struct servo *drive, const struct can_frame *frame)
 {
     return drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1;
 }
 
-void servo_on_frame(struct servo *drive, const struct can_frame *frame)
+void takt_servo_on_frame(struct servo *drive, const struct can_frame *frame)
 {
-    if (!servo_accepts(drive, frame) || drive->boot_ns != 0)
+    if (!takt_servo_accepts(drive, frame) || drive->boot_ns != 0)
         return;
     if (nmt_is_guard(frame, drive->config.node) && !drive->lss.is_nameless)
         take_guard(drive);
@@ -419,20 +420,20 @@ void servo_on_frame(struct servo *drive, const struct can_frame *frame)
     if (frame->id == identifier_of(drive->objects.communication.sync_cob_id))
         take_sync(drive, frame);
     else if (frame->id == LSS_REQUEST_COB_ID)
-        servo_take_lss(drive, frame);
+        takt_servo_take_lss(drive, frame);
     else if (is_time(drive, frame))
         take_time(drive, frame);
     else if (node_function(frame->id) == SDO_REQUEST_FUNCTION || frame->id == NMT_COMMAND_COB_ID ||
              node_function(frame->id) == NMT_HEARTBEAT_FUNCTION)
         take_other(drive, frame);
     else if (drive->nmt == NMT_OPERATIONAL)
-        servo_take_rpdo(drive, frame);
+        takt_servo_take_rpdo(drive, frame);
 }
 
-void servo_on_frame_at(struct servo *drive, const struct can_frame *frame, uint64_t time_ns)
+void takt_servo_on_frame_at(struct servo *drive, const struct can_frame *frame, uint64_t time_ns)
 {
     drive->heard_ns = time_ns;
-    servo_on_frame(drive, frame);
+    takt_servo_on_frame(drive, frame);
 }
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -444,17 +445,17 @@ static void watch_connection(struct servo *drive)
 {
     if (drive->now_ns >= drive->sync_lost_ns) {
         drive->sync_lost_ns = DRIVE_NEVER;
-        servo_set_communication_error(drive, EMCY_SYNC);
+        takt_servo_set_communication_error(drive, EMCY_SYNC);
     }
     if (drive->now_ns >= drive->guard_lost_ns) {
         drive->guard_lost_ns = DRIVE_NEVER;
-        servo_set_communication_error(drive, EMCY_HEARTBEAT);
+        takt_servo_set_communication_error(drive, EMCY_HEARTBEAT);
     }
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
         if (drive->now_ns < drive->consumer_ns[i])
             continue;
         drive->consumer_ns[i] = DRIVE_NEVER;
-        servo_set_communication_error(drive, EMCY_HEARTBEAT);
+        takt_servo_set_communication_error(drive, EMCY_HEARTBEAT);
     }
 }
 
@@ -464,7 +465,7 @@ static void run_timers(struct servo *drive)
     uint16_t heartbeat_ms = drive->objects.communication.producer_heartbeat_ms;
     if (drive->boot_ns != 0) {
         if (drive->now_ns >= drive->boot_ns)
-            servo_boot(drive);
+            takt_servo_boot(drive);
         else
             drive->due_ns = drive->boot_ns;
         return;
@@ -475,9 +476,9 @@ static void run_timers(struct servo *drive)
         drive->heartbeat_ns = drive->now_ns + (uint64_t)heartbeat_ms * MILLISECOND_NS;
     }
     watch_connection(drive);
-    servo_send_waiting_emergencies(drive);
-    servo_send_due(drive);
-    drive->due_ns = earlier(drive->heartbeat_ns, servo_next_pdo_ns(drive));
+    takt_servo_send_waiting_emergencies(drive);
+    takt_servo_send_due(drive);
+    drive->due_ns = earlier(drive->heartbeat_ns, takt_servo_next_pdo_ns(drive));
     drive->due_ns = earlier(drive->due_ns, drive->sync_lost_ns);
     drive->due_ns = earlier(drive->due_ns, drive->guard_lost_ns);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
@@ -498,43 +499,43 @@ static bool may_have_event(const struct servo *drive)
 
 static void run_motor(struct servo *drive, uint32_t cycle_ns)
 {
-    servo_begin_probe(drive);
-    servo_move(drive, cycle_ns);
-    servo_note_way(drive);
-    servo_run_probe(drive);
+    takt_servo_begin_probe(drive);
+    takt_servo_move(drive, cycle_ns);
+    takt_servo_note_way(drive);
+    takt_servo_run_probe(drive);
 }
 
-void servo_step(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_step(struct servo *drive, uint32_t cycle_ns)
 {
     if (drive->config.is_io)
-        servo_run_io(drive);
+        takt_servo_run_io(drive);
     else
         run_motor(drive, cycle_ns);
     drive->now_ns += cycle_ns;
     if (may_have_event(drive))
-        servo_note_events(drive);
+        takt_servo_note_events(drive);
     if (drive->now_ns >= drive->due_ns)
         run_timers(drive);
     if (drive->sdo.state == SDO_SERVER_SENDING)
-        sdo_server_go_on(&drive->sdo);
+        takt_sdo_server_go_on(&drive->sdo);
 }
 
-enum nmt_state servo_get_nmt_state(const struct servo *drive)
+enum nmt_state takt_servo_get_nmt_state(const struct servo *drive)
 {
     return drive->nmt;
 }
 
 /* A drive that cannot be told has the time between targets, once it is to follow them. */
-uint32_t servo_get_sync_period_us(const struct servo *drive)
+uint32_t takt_servo_get_sync_period_us(const struct servo *drive)
 {
     bool has_index;
-    const struct object_row *row = dictionary_find(drive->dictionary, 0x1006, 0, &has_index);
+    const struct object_row *row = takt_dictionary_find(drive->dictionary, 0x1006, 0, &has_index);
     if (row != NULL && row->access == OBJECT_RW)
         return drive->objects.communication.sync_period_us;
     return drive->nmt == NMT_OPERATIONAL ? (uint32_t)(drive->interpolation_ns / MICROSECOND_NS) : 0;
 }
 
-uint32_t servo_get_watched_ms(const struct servo *drive)
+uint32_t takt_servo_get_watched_ms(const struct servo *drive)
 {
     uint32_t shortest_ms = drive->guard_lost_ns != DRIVE_NEVER ? life_time_ms(drive) : 0;
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
@@ -545,7 +546,7 @@ uint32_t servo_get_watched_ms(const struct servo *drive)
     return shortest_ms;
 }
 
-bool servo_is_sync(const struct servo *drive, const struct can_frame *frame)
+bool takt_servo_is_sync(const struct servo *drive, const struct can_frame *frame)
 {
     return frame->id == identifier_of(drive->objects.communication.sync_cob_id) &&
            frame->length <= 1;

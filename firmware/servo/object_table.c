@@ -107,7 +107,7 @@
 #define NO_RTR    0x40000000
 
 /* clang-format off */
-const struct object_row object_table[] = {
+const struct object_row takt_object_table[] = {
     CONST(0x1000, U32, 0x00020192, "Device type"),
     VAR(0x1001, U8, RO, TPDO, PROCESS(error_register), 0, "Error register"),
     VAR(0x1002, U32, RO, TPDO, PROCESS(manufacturer_status), 0, "Manufacturer status register"),
@@ -292,11 +292,11 @@ const struct object_row object_table[] = {
 };
 /* clang-format on */
 
-const unsigned object_table_count = sizeof object_table / sizeof object_table[0];
+const unsigned takt_object_table_count = sizeof takt_object_table / sizeof takt_object_table[0];
 
-const struct dictionary dictionary_own = {
-    .row = object_table,
-    .count = sizeof object_table / sizeof object_table[0],
+const struct dictionary takt_dictionary_own = {
+    .row = takt_object_table,
+    .count = sizeof takt_object_table / sizeof takt_object_table[0],
     .dummies = 0xFC /* all whole numbers */
 };
 
@@ -346,15 +346,15 @@ static const struct object_row io_table[] = {
 };
 /* clang-format on */
 
-const struct dictionary dictionary_io = {.row = io_table,
-                                         .count = sizeof io_table / sizeof io_table[0]};
+const struct dictionary takt_dictionary_io = {.row = io_table,
+                                              .count = sizeof io_table / sizeof io_table[0]};
 
-const struct object_row *object_table_find(uint16_t index, uint8_t sub, bool *has_index)
+const struct object_row *takt_object_table_find(uint16_t index, uint8_t sub, bool *has_index)
 {
-    return dictionary_find(&dictionary_own, index, sub, has_index);
+    return takt_dictionary_find(&takt_dictionary_own, index, sub, has_index);
 }
 
-unsigned object_type_bytes(enum object_type type)
+unsigned takt_object_type_bytes(enum object_type type)
 {
     switch (type) {
     case OBJECT_INTEGER8:
@@ -373,7 +373,7 @@ unsigned object_type_bytes(enum object_type type)
     return 0;
 }
 
-int64_t object_type_value(enum object_type type, uint32_t raw)
+int64_t takt_object_type_value(enum object_type type, uint32_t raw)
 {
     switch (type) {
     case OBJECT_INTEGER8:
@@ -395,7 +395,7 @@ int64_t object_type_value(enum object_type type, uint32_t raw)
 }
 
 /* Fields have the width of their type; the copy goes through a number of that width. */
-uint32_t object_read(const struct object_row *row, const struct drive_objects *objects)
+uint32_t takt_object_read(const struct object_row *row, const struct drive_objects *objects)
 {
     const char *field = (const char *)objects + row->field;
     uint8_t one;
@@ -403,7 +403,7 @@ uint32_t object_read(const struct object_row *row, const struct drive_objects *o
     uint32_t four;
     if (row->flags & OBJECT_FIXED)
         return (uint32_t)row->initial;
-    switch (object_type_bytes(row->type)) {
+    switch (takt_object_type_bytes(row->type)) {
     case 1:
         memcpy(&one, field, sizeof one);
         return one;
@@ -416,14 +416,14 @@ uint32_t object_read(const struct object_row *row, const struct drive_objects *o
     }
 }
 
-void object_write(const struct object_row *row, struct drive_objects *objects, uint32_t raw)
+void takt_object_write(const struct object_row *row, struct drive_objects *objects, uint32_t raw)
 {
     char *field = (char *)objects + row->field;
     uint8_t one = (uint8_t)raw;
     uint16_t two = (uint16_t)raw;
     if (row->flags & OBJECT_FIXED)
         return;
-    switch (object_type_bytes(row->type)) {
+    switch (takt_object_type_bytes(row->type)) {
     case 1:
         memcpy(field, &one, sizeof one);
         break;

@@ -54,19 +54,19 @@ struct object_row {
         *title; /* of the index, where kind is ARRAY or RECORD; of a string: its constant text */
 };
 
-extern const struct object_row object_table[]; /* by rising index and sub-index */
-extern const unsigned object_table_count;
+extern const struct object_row takt_object_table[]; /* by rising index and sub-index */
+extern const unsigned takt_object_table_count;
 
 /* NULL: no such entry. *has_index: the index exists, so the sub-index is what is missing. */
-const struct object_row *object_table_find(uint16_t index, uint8_t sub, bool *has_index);
+const struct object_row *takt_object_table_find(uint16_t index, uint8_t sub, bool *has_index);
 
 /* Bytes of a number; 0 for strings and domains. */
-unsigned object_type_bytes(enum object_type type);
+unsigned takt_object_type_bytes(enum object_type type);
 /* What the bytes say: sign by the type. */
-int64_t object_type_value(enum object_type type, uint32_t raw);
+int64_t takt_object_type_value(enum object_type type, uint32_t raw);
 
 /* Numbers as raw bits, of the object's width. */
-uint32_t object_read(const struct object_row *row, const struct drive_objects *objects);
-void object_write(const struct object_row *row, struct drive_objects *objects, uint32_t raw);
+uint32_t takt_object_read(const struct object_row *row, const struct drive_objects *objects);
+void takt_object_write(const struct object_row *row, struct drive_objects *objects, uint32_t raw);
 
 #endif

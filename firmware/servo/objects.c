@@ -13,13 +13,13 @@
 
 static int32_t signed_round(double value)
 {
-    return (int32_t)maths_clamp(maths_round(value), (double)INT32_MIN, (double)INT32_MAX);
+    return (int32_t)maths_clamp(takt_maths_round(value), (double)INT32_MIN, (double)INT32_MAX);
 }
 
 static int16_t torque(const struct servo *drive)
 {
-    double torque =
-        maths_round(drive->torque_sign * TORQUE_PER_RATED * servo_loop_torque_ratio(&drive->loop));
+    double torque = takt_maths_round(drive->torque_sign * TORQUE_PER_RATED *
+                                     takt_servo_loop_torque_ratio(&drive->loop));
     return (int16_t)maths_clamp(torque, INT16_MIN, INT16_MAX);
 }
 
@@ -27,61 +27,62 @@ static void refresh_rest(struct servo *drive)
 {
     const struct servo_loop *loop = &drive->loop;
     struct drive_process *p = &drive->objects.process;
-    p->demand_position = servo_increments(drive, loop->command_mm - drive->origin_mm);
+    p->demand_position = takt_servo_increments(drive, loop->command_mm - drive->origin_mm);
     p->actual_internal = signed_round(drive->compensation.encoder_mm * loop->encoder_steps_per_mm);
     double velocity_per_mm = drive->velocity_sign * servo_velocity_scale(drive);
     p->actual_velocity = signed_round(loop->measured_velocity_mm_s * velocity_per_mm);
     p->demand_velocity = signed_round(loop->command_velocity_mm_s * velocity_per_mm);
     p->actual_torque = torque(drive);
-    p->manufacturer_status = servo_manufacturer_status(drive);
-    p->high_resolution_us = servo_high_resolution_us(drive);
-    const struct time_stamp time = servo_time_of_day(drive);
+    p->manufacturer_status = takt_servo_manufacturer_status(drive);
+    p->high_resolution_us = takt_servo_high_resolution_us(drive);
+    const struct time_stamp time = takt_servo_time_of_day(drive);
     p->time_ms = time.ms;
     p->time_days = time.days;
 }
 
-void servo_refresh_groups(struct servo *drive, unsigned groups)
+void takt_servo_refresh_groups(struct servo *drive, unsigned groups)
 {
     struct drive_process *p = &drive->objects.process;
     if (groups & DRIVE_GROUP_STATUS)
-        p->statusword = servo_statusword(drive);
+        p->statusword = takt_servo_statusword(drive);
     if (groups & DRIVE_GROUP_POSITION)
-        p->actual_position = servo_increments(drive, servo_actual_mm(drive));
+        p->actual_position = takt_servo_increments(drive, takt_servo_actual_mm(drive));
     if (groups & DRIVE_GROUP_FOLLOWING)
-        p->following_error = servo_increments(drive, servo_loop_following_error_mm(&drive->loop));
+        p->following_error =
+            takt_servo_increments(drive, takt_servo_loop_following_error_mm(&drive->loop));
     if (groups & DRIVE_GROUP_INPUTS)
-        p->digital_inputs = servo_inputs(drive);
+        p->digital_inputs = takt_servo_inputs(drive);
     if (groups & DRIVE_GROUP_REST)
         refresh_rest(drive);
 }
 
-void servo_refresh(struct servo *drive)
+void takt_servo_refresh(struct servo *drive)
 {
-    servo_refresh_groups(drive, DRIVE_GROUP_ALL);
+    takt_servo_refresh_groups(drive, DRIVE_GROUP_ALL);
 }
 
-uint32_t servo_read_row(const struct servo *drive, const struct object_row *row)
+uint32_t takt_servo_read_row(const struct servo *drive, const struct object_row *row)
 {
     const struct servo_meddler *m = &drive->meddler;
     uint32_t value;
     if (m->overrides != NULL && m->overrides(m->context, row, &value))
         return value;
-    return object_read(row, &drive->objects);
+    return takt_object_read(row, &drive->objects);
 }
 
 /* The mode first: a controlword that comes with it is meant for it. */
-void servo_apply_touches(struct servo *drive, unsigned touches)
+void takt_servo_apply_touches(struct servo *drive, unsigned touches)
 {
     if (touches & DRIVE_TOUCH_MODE)
-        servo_take_mode(drive, drive->objects.process.mode);
+        takt_servo_take_mode(drive, drive->objects.process.mode);
     if (touches & DRIVE_TOUCH_CONTROLWORD)
-        servo_take_controlword(drive, drive->objects.process.controlword);
+        takt_servo_take_controlword(drive, drive->objects.process.controlword);
     if (touches & DRIVE_TOUCH_CLOCK)
-        servo_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
+        takt_servo_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
     if (touches & DRIVE_TOUCH_TORQUE)
-        servo_derive_torque(drive);
+        takt_servo_derive_torque(drive);
     if (touches & DRIVE_TOUCH_PROBE)
-        servo_take_probe_function(drive);
+        takt_servo_take_probe_function(drive);
 }
 
 static uint32_t check_sync_id(uint32_t value)
@@ -156,7 +157,7 @@ static uint32_t check_communication_write(const struct servo *drive, const struc
         break;
     }
     if (row->index >= 0x1400 && row->index < 0x1C00)
-        return servo_check_pdo_write(drive, row, value);
+        return takt_servo_check_pdo_write(drive, row, value);
     return SDO_ABORT_NONE;
 }
 
@@ -174,7 +175,7 @@ static uint32_t check_profile_write(const struct servo *drive, const struct obje
     switch (row->index) {
     case 0x2010:
     case 0x2011:
-        return servo_check_compensation(drive, row, (uint32_t)value);
+        return takt_servo_check_compensation(drive, row, (uint32_t)value);
     case 0x2020:
         return check_loops(drive, row, value);
     case 0x605A:
@@ -182,13 +183,13 @@ static uint32_t check_profile_write(const struct servo *drive, const struct obje
     case 0x6086:
         return check_profile_type((uint32_t)value);
     case 0x6060:
-        return servo_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+        return takt_servo_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     case 0x607E:
     case 0x6091:
     case 0x6092:
         return drive->state == CIA402_ENABLED ? SDO_ABORT_STATE : SDO_ABORT_NONE;
     case 0x6098:
-        return servo_has_homing_method((int32_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+        return takt_servo_has_homing_method((int32_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     default:
         return SDO_ABORT_NONE;
     }
@@ -196,7 +197,7 @@ static uint32_t check_profile_write(const struct servo *drive, const struct obje
 
 static uint32_t check_number(const struct servo *drive, const struct object_row *row, uint32_t raw)
 {
-    int64_t value = object_type_value((enum object_type)row->type, raw);
+    int64_t value = takt_object_type_value((enum object_type)row->type, raw);
     if (row->flags & OBJECT_LIMITED && value < row->min)
         return SDO_ABORT_TOO_LOW;
     if (row->flags & OBJECT_LIMITED && value > row->max)
@@ -220,43 +221,43 @@ static uint32_t set_stored(struct servo *drive, const struct drive_objects *valu
     return SDO_ABORT_HARDWARE;
 }
 
-void servo_restore(struct servo *drive, uint16_t last)
+void takt_servo_restore(struct servo *drive, uint16_t last)
 {
     drive->objects.communication = drive->stored.communication;
-    dictionary_copy_memory(drive->dictionary, &drive->objects, &drive->stored, last);
+    takt_dictionary_copy_memory(drive->dictionary, &drive->objects, &drive->stored, last);
     if (last < UINT16_MAX)
         return;
     drive->objects.settings = drive->stored.settings;
-    servo_derive(drive);
-    servo_derive_compensation(drive);
+    takt_servo_derive(drive);
+    takt_servo_derive_compensation(drive);
 }
 
 static void follow_communication_write(struct servo *drive, const struct object_row *row)
 {
     switch (row->index) {
     case 0x1003:
-        servo_clear_history(drive);
+        takt_servo_clear_history(drive);
         break;
     case 0x1005:
     case 0x1012:
-        servo_set_filter(drive);
+        takt_servo_set_filter(drive);
         break;
     case 0x1006:
         drive->sync_lost_ns = DRIVE_NEVER;
         break;
     case 0x1013:
-        servo_apply_touches(drive, DRIVE_TOUCH_CLOCK);
+        takt_servo_apply_touches(drive, DRIVE_TOUCH_CLOCK);
         break;
     case 0x1016:
         if (row->sub >= 1 && row->sub <= DRIVE_CONSUMERS)
-            servo_restart_consumer(drive, row->sub - 1u);
+            takt_servo_restart_consumer(drive, row->sub - 1u);
         break;
     case 0x1017:
-        servo_restart_heartbeat(drive);
+        takt_servo_restart_heartbeat(drive);
         break;
     default:
         if (row->index >= 0x1400 && row->index < 0x1C00)
-            servo_update_pdo(drive, row->index);
+            takt_servo_update_pdo(drive, row->index);
         break;
     }
 }
@@ -265,36 +266,36 @@ static void follow_profile_write(struct servo *drive, const struct object_row *r
 {
     switch (row->index) {
     case 0x6040:
-        servo_apply_touches(drive, DRIVE_TOUCH_CONTROLWORD);
+        takt_servo_apply_touches(drive, DRIVE_TOUCH_CONTROLWORD);
         break;
     case 0x6060:
-        servo_apply_touches(drive, DRIVE_TOUCH_MODE);
+        takt_servo_apply_touches(drive, DRIVE_TOUCH_MODE);
         break;
     case 0x6072:
-        servo_apply_touches(drive, DRIVE_TOUCH_TORQUE);
+        takt_servo_apply_touches(drive, DRIVE_TOUCH_TORQUE);
         break;
     case 0x60B8:
-        servo_apply_touches(drive, DRIVE_TOUCH_PROBE);
+        takt_servo_apply_touches(drive, DRIVE_TOUCH_PROBE);
         break;
     case 0x2010:
     case 0x2011:
-        servo_derive_compensation(drive);
+        takt_servo_derive_compensation(drive);
         break;
     case 0x2020:
-        servo_derive_loops(drive);
+        takt_servo_derive_loops(drive);
         break;
     case 0x607E:
     case 0x6091:
     case 0x6092:
-        servo_derive(drive);
-        servo_derive_compensation(drive);
-        servo_hold(drive);
+        takt_servo_derive(drive);
+        takt_servo_derive_compensation(drive);
+        takt_servo_hold(drive);
         break;
     case 0x6065:
     case 0x6085:
     case 0x60C2:
     case 0x60C6:
-        servo_derive(drive);
+        takt_servo_derive(drive);
         break;
     default:
         break;
@@ -306,7 +307,7 @@ static uint32_t write_number(struct servo *drive, const struct object_row *row, 
     uint32_t code = check_number(drive, row, value);
     if (code != SDO_ABORT_NONE)
         return code;
-    object_write(row, &drive->objects, value);
+    takt_object_write(row, &drive->objects, value);
     if (row->index == 0x1010)
         return set_stored(drive, &drive->objects);
     if (row->index == 0x1011)
@@ -370,8 +371,8 @@ static uint32_t find(const struct servo *drive, uint32_t object, const struct ob
 {
     bool has_index;
     uint32_t code;
-    *row = dictionary_find(drive->dictionary, (uint16_t)(object >> 16), (uint8_t)(object >> 8),
-                           &has_index);
+    *row = takt_dictionary_find(drive->dictionary, (uint16_t)(object >> 16), (uint8_t)(object >> 8),
+                                &has_index);
     const struct servo_meddler *m = &drive->meddler;
     if (m->aborts_sdo != NULL && m->aborts_sdo(m->context, object, &code))
         return code;
@@ -383,7 +384,7 @@ static uint32_t find(const struct servo *drive, uint32_t object, const struct ob
 static uint32_t tell_abort(const struct servo *drive, uint32_t object, uint32_t code)
 {
     if (code != SDO_ABORT_NONE)
-        servo_tell(drive, DRIVE_EVENT_SDO_ABORT, object, code);
+        takt_servo_tell(drive, DRIVE_EVENT_SDO_ABORT, object, code);
     return code;
 }
 
@@ -398,19 +399,19 @@ static uint32_t read_object(struct servo *drive, uint32_t object, uint8_t number
         return SDO_ABORT_WRITE_ONLY;
     if (row->index == 0x1003 && row->sub > drive->objects.process.history_count)
         return SDO_ABORT_NO_DATA;
-    *length = object_type_bytes((enum object_type)row->type);
+    *length = takt_object_type_bytes((enum object_type)row->type);
     if (*length == 0)
         return read_bytes(drive, row, bytes, length);
-    servo_refresh_groups(drive, DRIVE_GROUP_ALL);
-    uint32_t value = servo_read_row(drive, row);
+    takt_servo_refresh_groups(drive, DRIVE_GROUP_ALL);
+    uint32_t value = takt_servo_read_row(drive, row);
     for (unsigned i = 0; i < 4; i++)
         number[i] = (uint8_t)(value >> 8 * i);
     *bytes = number;
     return SDO_ABORT_NONE;
 }
 
-uint32_t servo_read_sdo(void *drive, uint32_t object, uint8_t number[4], const uint8_t **bytes,
-                        size_t *length)
+uint32_t takt_servo_read_sdo(void *drive, uint32_t object, uint8_t number[4], const uint8_t **bytes,
+                             size_t *length)
 {
     return tell_abort(drive, object, read_object(drive, object, number, bytes, length));
 }
@@ -423,7 +424,7 @@ static uint32_t may_write(const struct servo *drive, uint32_t object, const stru
     return code;
 }
 
-uint32_t servo_may_write_sdo(void *drive, uint32_t object)
+uint32_t takt_servo_may_write_sdo(void *drive, uint32_t object)
 {
     const struct object_row *row;
     return tell_abort(drive, object, may_write(drive, object, &row));
@@ -437,7 +438,7 @@ static uint32_t write_object(struct servo *drive, uint32_t object, const uint8_t
     uint32_t code = may_write(drive, object, &row);
     if (code != SDO_ABORT_NONE)
         return code;
-    unsigned width = object_type_bytes((enum object_type)row->type);
+    unsigned width = takt_object_type_bytes((enum object_type)row->type);
     if (width == 0)
         return write_bytes(drive, row, bytes, length);
     if (length != width)
@@ -447,7 +448,7 @@ static uint32_t write_object(struct servo *drive, uint32_t object, const uint8_t
     return write_number(drive, row, value);
 }
 
-uint32_t servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length)
+uint32_t takt_servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length)
 {
     return tell_abort(drive, object, write_object(drive, object, bytes, length));
 }
@@ -456,23 +457,23 @@ uint32_t servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, siz
 static const struct object_row *find_number(const struct servo *drive, uint32_t object)
 {
     bool has_index;
-    const struct object_row *row = dictionary_find(drive->dictionary, (uint16_t)(object >> 16),
-                                                   (uint8_t)(object >> 8), &has_index);
-    unsigned bits = row ? 8 * object_type_bytes((enum object_type)row->type) : 0;
+    const struct object_row *row = takt_dictionary_find(drive->dictionary, (uint16_t)(object >> 16),
+                                                        (uint8_t)(object >> 8), &has_index);
+    unsigned bits = row ? 8 * takt_object_type_bytes((enum object_type)row->type) : 0;
     return bits != 0 && bits == (object & 0xFF) ? row : NULL;
 }
 
-bool servo_read_object(struct servo *drive, uint32_t object, uint32_t *value)
+bool takt_servo_read_object(struct servo *drive, uint32_t object, uint32_t *value)
 {
     const struct object_row *row = find_number(drive, object);
     if (!row)
         return false;
-    servo_refresh_groups(drive, DRIVE_GROUP_ALL);
-    *value = servo_read_row(drive, row);
+    takt_servo_refresh_groups(drive, DRIVE_GROUP_ALL);
+    *value = takt_servo_read_row(drive, row);
     return true;
 }
 
-bool servo_write_object(struct servo *drive, uint32_t object, uint32_t value)
+bool takt_servo_write_object(struct servo *drive, uint32_t object, uint32_t value)
 {
     const struct object_row *row = find_number(drive, object);
     if (!row || row->access == OBJECT_RO || row->access == OBJECT_CONST)

@@ -50,11 +50,11 @@ static bool find_mapped(const struct servo *drive, uint32_t entry, enum object_f
     *code = SDO_ABORT_NOT_MAPPABLE;
     if (is_dummy(drive, index))
         return direction == OBJECT_TO_RPDO && sub == 0 &&
-               bits == 8 * object_type_bytes((enum object_type)index);
-    *row = dictionary_find(drive->dictionary, index, sub, &has_index);
+               bits == 8 * takt_object_type_bytes((enum object_type)index);
+    *row = takt_dictionary_find(drive->dictionary, index, sub, &has_index);
     if (!*row)
         *code = has_index ? SDO_ABORT_NO_SUB_INDEX : SDO_ABORT_NO_OBJECT;
-    return *row && (*row)->flags & direction && bits == 8 * object_type_bytes((*row)->type);
+    return *row && (*row)->flags & direction && bits == 8 * takt_object_type_bytes((*row)->type);
 }
 
 static uint8_t touches_of(const struct object_row *row)
@@ -166,14 +166,14 @@ static void start_tpdo(struct servo *drive, unsigned i)
     pdo->event_ns = DRIVE_NEVER;
     if (period_ns != 0 && is_event_driven(pdo))
         pdo->event_ns = drive->now_ns + period_ns - shift_ns % period_ns;
-    servo_look_soon(drive);
+    takt_servo_look_soon(drive);
 }
 
 static void update_rpdo(struct servo *drive, unsigned i)
 {
     const struct drive_communication *c = &drive->objects.communication;
     update_pdo(drive, &drive->rpdo[i], &c->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO);
-    servo_set_filter(drive);
+    takt_servo_set_filter(drive);
 }
 
 static void update_tpdo(struct servo *drive, unsigned i)
@@ -184,7 +184,7 @@ static void update_tpdo(struct servo *drive, unsigned i)
     watch_events(drive);
 }
 
-void servo_update_pdo(struct servo *drive, uint16_t index)
+void takt_servo_update_pdo(struct servo *drive, uint16_t index)
 {
     const struct drive_communication *c = &drive->objects.communication;
     unsigned i = index & 0xFFu;
@@ -194,11 +194,11 @@ void servo_update_pdo(struct servo *drive, uint16_t index)
         update_tpdo(drive, i);
     else
         update_rpdo(drive, i);
-    servo_tell(drive, DRIVE_EVENT_PDO, index,
-               index >= TPDO_PARAMETERS ? c->tpdo[i].cob_id : c->rpdo[i].cob_id);
+    takt_servo_tell(drive, DRIVE_EVENT_PDO, index,
+                    index >= TPDO_PARAMETERS ? c->tpdo[i].cob_id : c->rpdo[i].cob_id);
 }
 
-void servo_update_pdos(struct servo *drive)
+void takt_servo_update_pdos(struct servo *drive)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         update_rpdo(drive, i);
@@ -206,7 +206,7 @@ void servo_update_pdos(struct servo *drive)
     }
 }
 
-void servo_start_pdos(struct servo *drive)
+void takt_servo_start_pdos(struct servo *drive)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         drive->rpdo[i].is_held = false;
@@ -253,7 +253,7 @@ static void apply(struct servo *drive, const struct drive_pdo *pdo, const struct
         bytes += pdo->bytes[i];
     }
     if (pdo->touches)
-        servo_apply_touches(drive, pdo->touches);
+        takt_servo_apply_touches(drive, pdo->touches);
 }
 
 /* Object 1007: what is synchronous counts only so long after SYNC. */
@@ -268,8 +268,8 @@ static void take(struct servo *drive, struct drive_pdo *pdo, const struct can_fr
     if (pdo->count == 0)
         return;
     if (frame->length < pdo->length) {
-        servo_send_emergency(drive, EMCY_PDO_LENGTH,
-                             EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
+        takt_servo_send_emergency(drive, EMCY_PDO_LENGTH,
+                                  EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
     } else if (pdo->transmission > TYPE_SYNC_MAX) {
         apply(drive, pdo, frame);
     } else if (!is_too_late(drive)) {
@@ -278,14 +278,14 @@ static void take(struct servo *drive, struct drive_pdo *pdo, const struct can_fr
     }
 }
 
-void servo_take_rpdo(struct servo *drive, const struct can_frame *frame)
+void takt_servo_take_rpdo(struct servo *drive, const struct can_frame *frame)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         if (drive->rpdo[i].is_valid && frame->id == drive->rpdo[i].cob_id)
             take(drive, &drive->rpdo[i], frame);
 }
 
-void servo_apply_held(struct servo *drive)
+void takt_servo_apply_held(struct servo *drive)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         if (!drive->rpdo[i].is_held)
@@ -300,16 +300,16 @@ static void send_pdo(struct servo *drive, struct drive_pdo *pdo)
     struct can_frame frame = {.id = pdo->cob_id, .length = pdo->length};
     uint8_t *bytes = frame.data;
     bool is_meddled = drive->meddler.overrides != NULL;
-    servo_refresh_groups(drive, pdo->groups);
+    takt_servo_refresh_groups(drive, pdo->groups);
     for (unsigned i = 0; i < pdo->count; i++) {
         /* What never changes has no field. */
         uint32_t value = is_meddled || pdo->field[i] == NULL
-                             ? servo_read_row(drive, pdo->row[i])
+                             ? takt_servo_read_row(drive, pdo->row[i])
                              : value_of(pdo->field[i], pdo->bytes[i]);
         write_bytes(bytes, pdo->bytes[i], value);
         bytes += pdo->bytes[i];
     }
-    (void)servo_send(drive, SERVO_FRAME_TPDO, &frame);
+    (void)takt_servo_send(drive, SERVO_FRAME_TPDO, &frame);
     pdo->is_due = false;
 }
 
@@ -332,7 +332,7 @@ static bool is_due_at_sync(struct drive_pdo *pdo, uint8_t sync_start, const stru
 }
 
 /* The first TPDO, which has the statusword, is the last to be sent: then all of this SYNC is said. */
-void servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
+void takt_servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
 {
     for (unsigned i = DRIVE_PDO_COUNT; i-- > 0;) {
         struct drive_pdo *pdo = &drive->tpdo[i];
@@ -343,11 +343,11 @@ void servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
     }
 }
 
-void servo_note_events(struct servo *drive)
+void takt_servo_note_events(struct servo *drive)
 {
     const struct drive_process *p = &drive->objects.process;
     uint8_t changed = 0;
-    servo_refresh_groups(drive, drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS));
+    takt_servo_refresh_groups(drive, drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS));
     if (p->error_code != drive->seen_error_code)
         changed |= DRIVE_GROUP_ERROR;
     if (p->mode_display != drive->seen_mode)
@@ -364,7 +364,7 @@ void servo_note_events(struct servo *drive)
     drive->seen_inputs = p->digital_inputs;
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         drive->tpdo[i].is_due = drive->tpdo[i].is_due || drive->tpdo[i].events & changed;
-    servo_look_soon(drive);
+    takt_servo_look_soon(drive);
 }
 
 static void send_if_due(struct servo *drive, unsigned i)
@@ -384,7 +384,7 @@ static void send_if_due(struct servo *drive, unsigned i)
         pdo->event_ns = drive->now_ns + (uint64_t)parameters->event_ms * MILLISECOND_NS;
 }
 
-void servo_send_due(struct servo *drive)
+void takt_servo_send_due(struct servo *drive)
 {
     if (drive->nmt != NMT_OPERATIONAL)
         return;
@@ -392,7 +392,7 @@ void servo_send_due(struct servo *drive)
         send_if_due(drive, i);
 }
 
-uint64_t servo_next_pdo_ns(const struct servo *drive)
+uint64_t takt_servo_next_pdo_ns(const struct servo *drive)
 {
     uint64_t next_ns = DRIVE_NEVER;
     if (drive->nmt != NMT_OPERATIONAL)
@@ -474,9 +474,9 @@ static uint32_t check_count(const struct servo *drive, const struct drive_pdo_ma
 static bool is_fixed(const struct servo *drive, uint16_t mapping_index)
 {
     bool has_index;
-    const struct object_row *row =
-        dictionary_find(drive->dictionary,
-                        (uint16_t)(mapping_index - RPDO_MAPPING + RPDO_PARAMETERS), 1, &has_index);
+    const struct object_row *row = takt_dictionary_find(
+        drive->dictionary, (uint16_t)(mapping_index - RPDO_MAPPING + RPDO_PARAMETERS), 1,
+        &has_index);
     return row != NULL && row->access != OBJECT_RW;
 }
 
@@ -495,8 +495,8 @@ static uint32_t check_mapping(const struct servo *drive, const struct object_row
                          : check_entry(drive, value, direction);
 }
 
-uint32_t servo_check_pdo_write(const struct servo *drive, const struct object_row *row,
-                               uint32_t value)
+uint32_t takt_servo_check_pdo_write(const struct servo *drive, const struct object_row *row,
+                                    uint32_t value)
 {
     const struct drive_communication *c = &drive->objects.communication;
     unsigned i = row->index & 0xFFu;

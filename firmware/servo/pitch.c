@@ -24,13 +24,13 @@ static bool is_flat(const struct pitch *pitch)
     return true;
 }
 
-bool pitch_make(struct pitch *pitch)
+bool takt_pitch_make(struct pitch *pitch)
 {
     double knot[DRIVE_PITCH_POINTS];
     for (unsigned i = 0; i < pitch->points; i++)
         knot[i] = i;
     if (pitch->points >= 2) {
-        spline_set_bends(pitch->points, knot, pitch->value_mm, pitch->bend_mm);
+        takt_spline_set_bends(pitch->points, knot, pitch->value_mm, pitch->bend_mm);
         if (is_flat(pitch))
             return true;
     }
@@ -39,13 +39,13 @@ bool pitch_make(struct pitch *pitch)
 }
 
 /* K = r v0 + s v1 - r s ((1 + r) M0 + (1 + s) M1) / 6,   r = 1 - s */
-double pitch_at(const struct pitch *pitch, double motor_mm)
+double takt_pitch_at(const struct pitch *pitch, double motor_mm)
 {
     unsigned outside = 0;
     if (pitch->points == 0)
         return 0;
-    const double at =
-        edge_hold((motor_mm - pitch->first_mm) * pitch->steps_per_mm, pitch->points - 1, &outside);
+    const double at = takt_edge_hold((motor_mm - pitch->first_mm) * pitch->steps_per_mm,
+                                     pitch->points - 1, &outside);
     const unsigned last = pitch->points - 2;
     const unsigned i = at < 1 ? 0 : at >= last ? last : (unsigned)at;
     const double s = at - i, r = 1 - s;
@@ -54,10 +54,10 @@ double pitch_at(const struct pitch *pitch, double motor_mm)
 }
 
 /* y = x - K(y), again and again: each time PITCH_STEEPEST_RATIO as far off. */
-double pitch_get_motor_mm(const struct pitch *pitch, double axis_mm)
+double takt_pitch_get_motor_mm(const struct pitch *pitch, double axis_mm)
 {
     double motor_mm = axis_mm;
     for (unsigned i = 0; i < INVERSE_STEPS; i++)
-        motor_mm = axis_mm - pitch_at(pitch, motor_mm);
+        motor_mm = axis_mm - takt_pitch_at(pitch, motor_mm);
     return motor_mm;
 }

@@ -25,12 +25,12 @@ struct pitch {
 };
 
 /* All but the bends is set. False: it is steeper than PITCH_STEEPEST_RATIO anywhere, or too short; it has no points then. */
-bool pitch_make(struct pitch *pitch);
+bool takt_pitch_make(struct pitch *pitch);
 
 /* x = y + K(y): what K is where the motor says y. */
-double pitch_at(const struct pitch *pitch, double motor_mm);
+double takt_pitch_at(const struct pitch *pitch, double motor_mm);
 
 /* The y of an x. */
-double pitch_get_motor_mm(const struct pitch *pitch, double axis_mm);
+double takt_pitch_get_motor_mm(const struct pitch *pitch, double axis_mm);
 
 #endif

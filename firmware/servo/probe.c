@@ -14,7 +14,7 @@ static unsigned bits_of(unsigned word, unsigned probe)
 }
 
 /* Enabling begins anew: what has been latched counts no more. Disabled, the status is 0. */
-void servo_take_probe_function(struct servo *drive)
+void takt_servo_take_probe_function(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
     unsigned status = p->probe_status;
@@ -44,12 +44,12 @@ static void latch(struct servo *drive, unsigned probe, bool rises, int32_t posit
         return;
     p->probe_status = (uint16_t)(p->probe_status | seen);
     p->probe_latched[SECOND_VALUES * probe + !rises] = position_inc;
-    servo_tell(drive, DRIVE_EVENT_PROBE, probe + 1, (uint32_t)position_inc);
+    takt_servo_tell(drive, DRIVE_EVENT_PROBE, probe + 1, (uint32_t)position_inc);
 }
 
 static void latch_all(struct servo *drive, bool is_index, bool rises, double position_mm)
 {
-    int32_t position_inc = servo_increments(drive, position_mm);
+    int32_t position_inc = takt_servo_increments(drive, position_mm);
     for (unsigned i = 0; i < DRIVE_TOUCH_PROBES; i++) {
         bool by_index = bits_of(drive->objects.process.probe_function, i) & CIA402_PROBE_AT_INDEX;
         if (by_index == is_index)
@@ -57,28 +57,28 @@ static void latch_all(struct servo *drive, bool is_index, bool rises, double pos
     }
 }
 
-double servo_get_position_at_mm(const struct servo *drive, double ratio)
+double takt_servo_get_position_at_mm(const struct servo *drive, double ratio)
 {
     double begin_mm = drive->probe.begin_mm;
     return begin_mm + (drive->loop.measured_mm - begin_mm) * ratio - drive->origin_mm;
 }
 
-void servo_touch(struct servo *drive, bool touches, double ratio)
+void takt_servo_touch(struct servo *drive, bool touches, double ratio)
 {
     if (touches == drive->probe.touches)
         return;
     drive->probe.touches = touches;
-    latch_all(drive, false, touches, servo_get_position_at_mm(drive, ratio));
+    latch_all(drive, false, touches, takt_servo_get_position_at_mm(drive, ratio));
 }
 
-void servo_begin_probe(struct servo *drive)
+void takt_servo_begin_probe(struct servo *drive)
 {
     drive->probe.begin_mm = drive->loop.measured_mm;
     drive->probe.pulses = drive->loop.sense.pulses;
 }
 
 /* A pulse is where the motor's angle is 0: its rising and its falling edge are one. The last one of a cycle counts. */
-void servo_run_probe(struct servo *drive)
+void takt_servo_run_probe(struct servo *drive)
 {
     const struct motor_sense *sense = &drive->loop.sense;
     if (sense->pulses == drive->probe.pulses || drive->probe.function == 0)

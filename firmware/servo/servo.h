@@ -32,7 +32,7 @@ struct servo_config {
     uint8_t node; /* 1 ... 127 */
     bool is_fd;   /* its bus is CAN FD: PDOs of up to 64 bytes */
     bool
-        is_io; /* no drive but an I/O node (CiA 401), of dictionary_io: nothing of the motor counts */
+        is_io; /* no drive but an I/O node (CiA 401), of takt_dictionary_io: nothing of the motor counts */
     bool
         is_nameless; /* it has no node id before it gets one by LSS; node is then its serial number alone */
     bool is_absolute; /* the encoder knows the axis's position at power-on: it is homed */
@@ -74,76 +74,77 @@ struct servo;
  * Switches the drive on; it has not booted yet. config is copied. target: its RPDO2, see canopen/target_pdo.h; NULL: what
  * the dictionary says. The ports must stay usable as long as the drive; motor: NULL for an I/O node.
  */
-void servo_init(struct servo *drive, const struct servo_config *config, const struct pdo *target,
-                const struct can_port *port, const struct motor_port *motor);
+void takt_servo_init(struct servo *drive, const struct servo_config *config,
+                     const struct pdo *target, const struct can_port *port,
+                     const struct motor_port *motor);
 
 /* Both may be left out. eds: the text of object 1021; it must stay. */
-void servo_observe(struct servo *drive, const struct drive_observer *observer);
-void servo_set_eds(struct servo *drive, const char *eds, size_t length);
+void takt_servo_observe(struct servo *drive, const struct drive_observer *observer);
+void takt_servo_set_eds(struct servo *drive, const char *eds, size_t length);
 
 /*
  * Who is to keep what object 1010 stores, and 1011 takes back, beyond the drive's own life; drive_store.h has a form for
  * that. Without one it lives as long as the drive.
  */
-void servo_keep(struct servo *drive, const struct drive_keeper *keeper);
+void takt_servo_keep(struct servo *drive, const struct drive_keeper *keeper);
 
 /* Copied. Without it nobody meddles. */
-void servo_meddle(struct servo *drive, const struct servo_meddler *meddler);
+void takt_servo_meddle(struct servo *drive, const struct servo_meddler *meddler);
 
 /* The power stage says that it fails: emergency, fault reaction, fault. */
-void servo_fail(struct servo *drive, uint16_t code, uint8_t error_register);
+void takt_servo_fail(struct servo *drive, uint16_t code, uint8_t error_register);
 /* Sends an emergency, notes it in the history, and goes on. error_register: what it adds to 1001. */
-void servo_send_emergency(struct servo *drive, uint16_t code, uint8_t error_register);
+void takt_servo_send_emergency(struct servo *drive, uint16_t code, uint8_t error_register);
 /* As NMT's reset of the node. */
-void servo_reboot(struct servo *drive);
+void takt_servo_reboot(struct servo *drive);
 /* Tells the observer. */
-void servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t first,
-                uint32_t second);
+void takt_servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t first,
+                     uint32_t second);
 
 /* Sends the boot-up message and enters the state pre-operational. */
-void servo_boot(struct servo *drive);
+void takt_servo_boot(struct servo *drive);
 
 /* The drive listens to frames of this identifier: what a filter of the bus may let through. */
-bool servo_accepts(const struct servo *drive, const struct can_frame *frame);
+bool takt_servo_accepts(const struct servo *drive, const struct can_frame *frame);
 
 /* A frame has come; the drive may send answers. */
-void servo_on_frame(struct servo *drive, const struct can_frame *frame);
+void takt_servo_on_frame(struct servo *drive, const struct can_frame *frame);
 /* The same where the time on the bus is known: targets behind the window of object 1007 are none. */
-void servo_on_frame_at(struct servo *drive, const struct can_frame *frame, uint64_t time_ns);
+void takt_servo_on_frame_at(struct servo *drive, const struct can_frame *frame, uint64_t time_ns);
 
 /*
  * Time goes on by one cycle (> 0), which follows the SYNC just received: motor, supervision,
  * timers.
  */
-void servo_step(struct servo *drive, uint32_t cycle_ns);
+void takt_servo_step(struct servo *drive, uint32_t cycle_ns);
 
 /*
  * After a step: within it, when so much of it had passed, 0 ... 1, the input of the touch probes became so. A level that it
  * has already is no edge.
  */
-void servo_touch(struct servo *drive, bool touches, double ratio);
+void takt_servo_touch(struct servo *drive, bool touches, double ratio);
 /* The position that the drive had then by its encoder, unrounded. */
-double servo_get_position_at_mm(const struct servo *drive, double ratio);
+double takt_servo_get_position_at_mm(const struct servo *drive, double ratio);
 
-enum cia402_state servo_get_state(const struct servo *drive);
-enum nmt_state servo_get_nmt_state(const struct servo *drive);
+enum cia402_state takt_servo_get_state(const struct servo *drive);
+enum nmt_state takt_servo_get_nmt_state(const struct servo *drive);
 /* What the controller says of the time between two SYNCs, object 1006, else 60C2; 0: nothing. */
-uint32_t servo_get_sync_period_us(const struct servo *drive);
+uint32_t takt_servo_get_sync_period_us(const struct servo *drive);
 
 /* The shortest time without a heartbeat (1016) or a guarding frame (100C) that it takes, ms; 0: it watches none. */
-uint32_t servo_get_watched_ms(const struct servo *drive);
+uint32_t takt_servo_get_watched_ms(const struct servo *drive);
 
 /* The frame is SYNC to this drive (object 1005). */
-bool servo_is_sync(const struct servo *drive, const struct can_frame *frame);
+bool takt_servo_is_sync(const struct servo *drive, const struct can_frame *frame);
 
 /* Brings all computed objects up to date. */
-void servo_refresh(struct servo *drive);
+void takt_servo_refresh(struct servo *drive);
 
 /*
  * Objects of the drive by their mapping entry (canopen/cia402.h), as raw bits. False: no such
  * object of that length; for write also one that cannot be written, or not to this value.
  */
-bool servo_read_object(struct servo *drive, uint32_t object, uint32_t *value);
-bool servo_write_object(struct servo *drive, uint32_t object, uint32_t value);
+bool takt_servo_read_object(struct servo *drive, uint32_t object, uint32_t *value);
+bool takt_servo_write_object(struct servo *drive, uint32_t object, uint32_t value);
 
 #endif

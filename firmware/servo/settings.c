@@ -29,7 +29,7 @@
 
 static uint32_t unsigned_round(double value)
 {
-    return (uint32_t)maths_clamp(maths_round(value), 0, (double)UINT32_MAX);
+    return (uint32_t)maths_clamp(takt_maths_round(value), 0, (double)UINT32_MAX);
 }
 
 static uint32_t unsigned_increments(const struct servo *drive, double value_mm)
@@ -37,7 +37,7 @@ static uint32_t unsigned_increments(const struct servo *drive, double value_mm)
     return unsigned_round(value_mm * servo_scale(drive));
 }
 
-/* Of a velocity or an acceleration. */
+/* A velocity or an acceleration as objects tell it. */
 static uint32_t unsigned_velocity(const struct servo *drive, double value_mm_s)
 {
     return unsigned_round(value_mm_s * servo_velocity_scale(drive));
@@ -59,15 +59,15 @@ static void set_interpolation_period(struct drive_settings *s, uint32_t cycle_us
 static bool has_object(const struct servo *drive, unsigned index, uint8_t sub)
 {
     bool has_index;
-    return dictionary_find(drive->dictionary, (uint16_t)index, sub, &has_index) != NULL;
+    return takt_dictionary_find(drive->dictionary, (uint16_t)index, sub, &has_index) != NULL;
 }
 
 /* Values of a data sheet, and PDOs that it has. */
 static void take_data_sheet(struct servo *drive)
 {
     struct drive_communication *c = &drive->objects.communication;
-    dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
-                           drive->config.node);
+    takt_dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
+                                drive->config.node);
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         if (!has_object(drive, 0x1400 + i, 1) || !has_object(drive, 0x1600 + i, 0))
             c->rpdo[i].cob_id |= PDO_NOT_VALID;
@@ -97,13 +97,13 @@ static void set_loops(struct drive_settings *s, const struct servo_loop_config *
 }
 
 /* What the machine makes of the initial values: everything that is counted in increments. */
-void servo_init_objects(struct servo *drive)
+void takt_servo_init_objects(struct servo *drive)
 {
     const struct servo_config *config = &drive->config;
     struct drive_objects *o = &drive->objects;
     double turn_mm = config->loop.travel_per_revolution_mm;
     memset(o, 0, sizeof *o);
-    dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node);
+    takt_dictionary_set_initial(&takt_dictionary_own, DICTIONARY_ALL, o, drive->config.node);
     drive->increments_per_mm = drive->config.increments_per_mm;
     o->identity.serial = drive->config.node;
     o->identity.encoder_counts = config->loop.encoder_counts_per_revolution;
@@ -128,12 +128,13 @@ void servo_init_objects(struct servo *drive)
     o->settings.feed_increments = unsigned_increments(drive, turn_mm);
     o->settings.velocity_window = o->settings.velocity_threshold = (uint16_t)maths_min(
         unsigned_velocity(drive, DEFAULT_VELOCITY_TURNS_S * turn_mm), UINT16_MAX);
-    o->settings.max_torque = (uint16_t)maths_clamp(
-        maths_round(TORQUE_PER_RATED * config->loop.torque_max_nm / config->loop.torque_rated_nm),
-        0, UINT16_MAX);
+    o->settings.max_torque =
+        (uint16_t)maths_clamp(takt_maths_round(TORQUE_PER_RATED * config->loop.torque_max_nm /
+                                               config->loop.torque_rated_nm),
+                              0, UINT16_MAX);
     set_interpolation_period(&o->settings, drive->config.cycle_us);
     set_loops(&o->settings, &config->loop);
-    if (drive->dictionary != &dictionary_own)
+    if (drive->dictionary != &takt_dictionary_own)
         take_data_sheet(drive);
 }
 
@@ -193,7 +194,7 @@ static void derive_signs(struct servo *drive)
 }
 
 /* Object 6072. As at power-on it stands for what the motor has. */
-void servo_derive_torque(struct servo *drive)
+void takt_servo_derive_torque(struct servo *drive)
 {
     const uint16_t max_torque = drive->objects.settings.max_torque;
     bool is_initial = max_torque == drive->initial.settings.max_torque;
@@ -208,7 +209,7 @@ static double tuned(uint32_t value, uint32_t initial, double machine, double per
     return value == initial ? machine : value / per_unit;
 }
 
-void servo_derive_loops(struct servo *drive)
+void takt_servo_derive_loops(struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     const struct drive_settings *initial = &drive->initial.settings;
@@ -227,10 +228,10 @@ void servo_derive_loops(struct servo *drive)
               machine->velocity_feed_forward_ratio, THOUSANDTHS);
     loop.torque_feed_forward_ratio = tuned(s->torque_feed_forward, initial->torque_feed_forward,
                                            machine->torque_feed_forward_ratio, THOUSANDTHS);
-    servo_loop_tune(&drive->loop, &loop);
+    takt_servo_loop_tune(&drive->loop, &loop);
 }
 
-void servo_derive(struct servo *drive)
+void takt_servo_derive(struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     const struct drive_settings *initial = &drive->initial.settings;
@@ -247,6 +248,6 @@ void servo_derive(struct servo *drive)
               config->quick_stop_deceleration_mm_s2, per_mm_s),
         in_mm(drive, s->max_deceleration, initial->max_deceleration, MATHS_INFINITY, per_mm_s));
     derive_signs(drive);
-    servo_derive_torque(drive);
-    servo_derive_loops(drive);
+    takt_servo_derive_torque(drive);
+    takt_servo_derive_loops(drive);
 }

@@ -24,7 +24,7 @@ static double limited_mm_s(struct servo *drive, double velocity_mm_s, double mos
 static void turn(struct servo *drive, double velocity_mm_s, uint32_t cycle_ns)
 {
     drive->velocity_mm_s = velocity_mm_s;
-    servo_loop_turn(&drive->loop, velocity_mm_s, cycle_ns);
+    takt_servo_loop_turn(&drive->loop, velocity_mm_s, cycle_ns);
 }
 
 /* Objects 606D and 606E. */
@@ -33,46 +33,51 @@ static void check_velocity(struct servo *drive, double target_mm_s, uint32_t cyc
     const struct drive_settings *s = &drive->objects.settings;
     double window_mm_s = s->velocity_window / servo_velocity_scale(drive);
     bool is_inside = maths_abs(target_mm_s - drive->loop.measured_velocity_mm_s) <= window_mm_s;
-    servo_note_reached(drive, is_inside, s->velocity_window_ms, cycle_ns);
+    takt_servo_note_reached(drive, is_inside, s->velocity_window_ms, cycle_ns);
 }
 
 /* To the other direction it slows down first, and then speeds up. */
-void servo_run_profile_velocity(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_run_profile_velocity(struct servo *drive, uint32_t cycle_ns)
 {
-    double target_mm_s =
-        limited_mm_s(drive, target_velocity_mm_s(drive), servo_profile_velocity_max_mm_s(drive));
+    double target_mm_s = limited_mm_s(drive, target_velocity_mm_s(drive),
+                                      takt_servo_profile_velocity_max_mm_s(drive));
     double now_mm_s = drive->velocity_mm_s;
     double goal_mm_s = now_mm_s * target_mm_s < 0 ? 0 : target_mm_s;
     bool speeds_up = maths_abs(goal_mm_s) > maths_abs(now_mm_s);
-    double ramp_mm_s2 = speeds_up ? servo_profile_acceleration_mm_s2(drive)
-                                  : servo_profile_deceleration_mm_s2(drive);
-    turn(drive, course_approach(now_mm_s, goal_mm_s, ramp_mm_s2 * (cycle_ns * 1e-9)), cycle_ns);
+    double ramp_mm_s2 = speeds_up ? takt_servo_profile_acceleration_mm_s2(drive)
+                                  : takt_servo_profile_deceleration_mm_s2(drive);
+    turn(drive, takt_course_approach(now_mm_s, goal_mm_s, ramp_mm_s2 * (cycle_ns * 1e-9)),
+         cycle_ns);
     check_velocity(drive, target_mm_s, cycle_ns);
 }
 
-void servo_run_cyclic_velocity(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_run_cyclic_velocity(struct servo *drive, uint32_t cycle_ns)
 {
-    servo_set_offsets(drive);
-    turn(drive,
-         limited_mm_s(drive, target_velocity_mm_s(drive), servo_motor_velocity_max_mm_s(drive)),
-         cycle_ns);
+    takt_servo_set_offsets(drive);
+    turn(
+        drive,
+        limited_mm_s(drive, target_velocity_mm_s(drive), takt_servo_motor_velocity_max_mm_s(drive)),
+        cycle_ns);
 }
 
 /* ---- Torque ---- */
 
-/* Of the rated torque, as the motor turns. A motor at its highest speed (6080) gets none that would make it faster. */
+/*
+ * Torque in parts of the rated one, as the motor turns. At its highest speed (6080) a motor gets none that speeds it
+ * up.
+ */
 static void push(struct servo *drive, double ratio, uint32_t cycle_ns)
 {
     struct servo_loop *loop = &drive->loop;
     double velocity_mm_s = loop->measured_velocity_mm_s;
-    double most = servo_loop_torque_limit_mm_s2(loop) * loop->rated_per_mm_s2;
-    bool is_fast = maths_abs(velocity_mm_s) >= servo_motor_velocity_max_mm_s(drive) &&
+    double most = takt_servo_loop_torque_limit_mm_s2(loop) * loop->rated_per_mm_s2;
+    bool is_fast = maths_abs(velocity_mm_s) >= takt_servo_motor_velocity_max_mm_s(drive) &&
                    ratio * velocity_mm_s > 0;
     double limited = is_fast ? 0 : maths_clamp(ratio, -most, most);
     drive->is_limited = limited != ratio;
     drive->objects.process.demand_torque =
-        (int16_t)maths_round(drive->torque_sign * limited * TORQUE_PER_RATED);
-    servo_loop_push(loop, limited * loop->mm_s2_per_rated, cycle_ns);
+        (int16_t)takt_maths_round(drive->torque_sign * limited * TORQUE_PER_RATED);
+    takt_servo_loop_push(loop, limited * loop->mm_s2_per_rated, cycle_ns);
     drive->velocity_mm_s = loop->measured_velocity_mm_s;
 }
 
@@ -82,17 +87,17 @@ static double ratio_of(const struct servo *drive, int32_t torque)
 }
 
 /* Halt: to no torque. */
-void servo_run_profile_torque(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_run_profile_torque(struct servo *drive, uint32_t cycle_ns)
 {
     const struct drive_objects *o = &drive->objects;
     double target = drive->is_halted ? 0 : ratio_of(drive, o->process.target_torque);
     double by = o->settings.torque_slope / TORQUE_PER_RATED * (cycle_ns * 1e-9);
-    drive->torque_ratio = course_approach(drive->torque_ratio, target, by);
+    drive->torque_ratio = takt_course_approach(drive->torque_ratio, target, by);
     push(drive, drive->torque_ratio, cycle_ns);
     drive->setpoints.is_reached = drive->torque_ratio == target;
 }
 
-void servo_run_cyclic_torque(struct servo *drive, uint32_t cycle_ns)
+void takt_servo_run_cyclic_torque(struct servo *drive, uint32_t cycle_ns)
 {
     const struct drive_process *p = &drive->objects.process;
     push(drive, ratio_of(drive, (int32_t)p->target_torque + p->torque_offset), cycle_ns);

@@ -8,7 +8,7 @@
 
 #define HEAD_BYTES 4
 
-bool servo_is_stored(const struct object_row *row)
+bool takt_servo_is_stored(const struct object_row *row)
 {
     bool is_process = row->field < sizeof(struct drive_process);
     return row->access == OBJECT_RW && !(row->flags & OBJECT_FIXED) && !is_process;
@@ -17,7 +17,7 @@ bool servo_is_stored(const struct object_row *row)
 static size_t width_of(const struct object_row *row)
 {
     return row->type == OBJECT_STRING ? DRIVE_LABEL_SIZE
-                                      : object_type_bytes((enum object_type)row->type);
+                                      : takt_object_type_bytes((enum object_type)row->type);
 }
 
 static void get_value(const struct object_row *row, const struct drive_objects *objects,
@@ -26,7 +26,7 @@ static void get_value(const struct object_row *row, const struct drive_objects *
     if (row->type == OBJECT_STRING)
         memcpy(bytes, (const char *)objects + row->field, DRIVE_LABEL_SIZE);
     else
-        little_endian_write32(bytes, object_read(row, objects));
+        little_endian_write32(bytes, takt_object_read(row, objects));
 }
 
 static bool is_changed(const struct servo *drive, const struct object_row *row)
@@ -37,7 +37,7 @@ static bool is_changed(const struct servo *drive, const struct object_row *row)
     return memcmp(now, before, width_of(row)) != 0;
 }
 
-size_t servo_write_stored(const struct servo *drive, uint8_t *bytes, size_t room)
+size_t takt_servo_write_stored(const struct servo *drive, uint8_t *bytes, size_t room)
 {
     const struct dictionary *dictionary = drive->dictionary;
     size_t at = 1;
@@ -47,7 +47,7 @@ size_t servo_write_stored(const struct servo *drive, uint8_t *bytes, size_t room
     for (unsigned i = 0; i < dictionary->count; i++) {
         const struct object_row *row = &dictionary->row[i];
         uint8_t value[DRIVE_LABEL_SIZE];
-        if (!servo_is_stored(row) || !is_changed(drive, row))
+        if (!takt_servo_is_stored(row) || !is_changed(drive, row))
             continue;
         if (room - at < HEAD_BYTES + width_of(row))
             return 0;
@@ -67,10 +67,10 @@ static bool take_number(const struct object_row *row, struct drive_objects *stor
     uint8_t all[4] = {0};
     memcpy(all, bytes, width_of(row));
     uint32_t raw = little_endian_read32(all);
-    int64_t value = object_type_value((enum object_type)row->type, raw);
+    int64_t value = takt_object_type_value((enum object_type)row->type, raw);
     if (row->flags & OBJECT_LIMITED && (value < row->min || value > row->max))
         return false;
-    object_write(row, stored, raw);
+    takt_object_write(row, stored, raw);
     return true;
 }
 
@@ -90,8 +90,8 @@ static size_t take_value(struct servo *drive, const uint8_t *bytes, size_t left)
     if (left < HEAD_BYTES)
         return 0;
     const struct object_row *row =
-        dictionary_find(drive->dictionary, little_endian_read16(bytes), bytes[2], &has_index);
-    if (row == NULL || !servo_is_stored(row) || bytes[3] != width_of(row) ||
+        takt_dictionary_find(drive->dictionary, little_endian_read16(bytes), bytes[2], &has_index);
+    if (row == NULL || !takt_servo_is_stored(row) || bytes[3] != width_of(row) ||
         left - HEAD_BYTES < width_of(row))
         return 0;
     bool is_right = row->type == OBJECT_STRING
@@ -100,13 +100,13 @@ static size_t take_value(struct servo *drive, const uint8_t *bytes, size_t left)
     return is_right ? HEAD_BYTES + width_of(row) : 0;
 }
 
-bool servo_read_stored(struct servo *drive, const uint8_t *bytes, size_t length)
+bool takt_servo_read_stored(struct servo *drive, const uint8_t *bytes, size_t length)
 {
     size_t at = 1;
     if (length < 1 || bytes[0] == 0 || (bytes[0] > NODE_MAX && bytes[0] != LSS_NO_NODE))
         return false;
     drive->lss.stored = bytes[0]; /* values count from this node id on */
-    servo_apply_lss(drive, true);
+    takt_servo_apply_lss(drive, true);
     while (at < length) {
         size_t taken = take_value(drive, bytes + at, length - at);
         if (taken == 0) {
@@ -115,7 +115,7 @@ bool servo_read_stored(struct servo *drive, const uint8_t *bytes, size_t length)
         }
         at += taken;
     }
-    servo_restore(drive, UINT16_MAX);
-    servo_update_pdos(drive);
+    takt_servo_restore(drive, UINT16_MAX);
+    takt_servo_update_pdos(drive);
     return true;
 }

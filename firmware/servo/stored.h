@@ -10,20 +10,20 @@
 
 #include "servo/servo.h"
 
-/* Of all objects of a drive's own dictionary. */
+/* Bytes of all objects of a drive's own dictionary. */
 #define SERVO_STORED_MAX 4096
 
 /* All that can be written, and does not change from cycle to cycle. */
-bool servo_is_stored(const struct object_row *row);
+bool takt_servo_is_stored(const struct object_row *row);
 
 /* How many of the bytes; 0: there is no room for all of it. */
-size_t servo_write_stored(const struct servo *drive, uint8_t *bytes, size_t room);
+size_t takt_servo_write_stored(const struct servo *drive, uint8_t *bytes, size_t room);
 
 /*
  * Before the drive boots: it is switched on with these values. False: an object is not there, of another width, or beyond
  * its limits, as after an update of the firmware; the drive has its node id then, and the
  * values of power-on.
  */
-bool servo_read_stored(struct servo *drive, const uint8_t *bytes, size_t length);
+bool takt_servo_read_stored(struct servo *drive, const uint8_t *bytes, size_t length);
 
 #endif

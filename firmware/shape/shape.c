@@ -36,7 +36,7 @@ static double half_period(const struct shape_mode mode[SHAPE_MODES], double cycl
 
     for (unsigned n = 0; n < SHAPE_MODES; n++) {
         if (is_mode(&mode[n])) {
-            cycles = maths_max(cycles, maths_round(0.5 * zv_period(&mode[n], cycle_s)));
+            cycles = maths_max(cycles, takt_maths_round(0.5 * takt_zv_period(&mode[n], cycle_s)));
         }
     }
     return cycles;
@@ -49,15 +49,15 @@ static double half_period(const struct shape_mode mode[SHAPE_MODES], double cycl
 static void keep_way(struct train *t, const struct shape_mode mode[SHAPE_MODES], double cycle_s)
 {
     const double distance = half_period(mode, cycle_s);
-    const double excess = train_spread(t) - wanted_spread(mode, cycle_s);
+    const double excess = takt_train_spread(t) - wanted_spread(mode, cycle_s);
     const double m = excess / (2.0 * distance * distance);
     struct train keeping;
 
-    train_set_none(&keeping);
-    train_add(&keeping, 0.0, -m);
-    train_add(&keeping, distance, 1.0 + 2.0 * m);
-    train_add(&keeping, 2.0 * distance, -m);
-    train_append(t, &keeping);
+    takt_train_set_none(&keeping);
+    takt_train_add(&keeping, 0.0, -m);
+    takt_train_add(&keeping, distance, 1.0 + 2.0 * m);
+    takt_train_add(&keeping, 2.0 * distance, -m);
+    takt_train_append(t, &keeping);
 }
 
 static void make_train(const struct shape_config *config, unsigned axis, struct train *t)
@@ -69,7 +69,7 @@ static void make_train(const struct shape_config *config, unsigned axis, struct 
 
         if (is_mode(&mode[n])) {
             config->train(&mode[n], config->cycle_s, &one);
-            train_append(t, &one);
+            takt_train_append(t, &one);
         }
     }
     if (config->keeps_way && t->count > 1) {
@@ -83,15 +83,16 @@ static void align(struct shape *s)
     double latest = 0.0;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        latest = maths_max(latest, train_mean(&s->train[i]));
+        latest = maths_max(latest, takt_train_mean(&s->train[i]));
     }
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         struct train delay;
 
-        train_set_none(&delay);
-        train_add(&delay, maths_max(0.0, latest - train_mean(&s->train[i])), 1.0);
-        train_append(&s->train[i], &delay);
-        s->cycles = train_length(&s->train[i]) > s->cycles ? train_length(&s->train[i]) : s->cycles;
+        takt_train_set_none(&delay);
+        takt_train_add(&delay, maths_max(0.0, latest - takt_train_mean(&s->train[i])), 1.0);
+        takt_train_append(&s->train[i], &delay);
+        s->cycles = takt_train_length(&s->train[i]) > s->cycles ? takt_train_length(&s->train[i])
+                                                                : s->cycles;
     }
 }
 
@@ -104,7 +105,7 @@ static const char *check_mode(const struct shape_mode *mode, double cycle_s)
     if (mode->hz * cycle_s > SHAPE_HZ_CYCLE_MAX) {
         return "a mode is too quick for the control cycle to be shaped";
     }
-    return zv_period(mode, cycle_s) < (double)SHAPE_CYCLES_MAX ? NULL : TOO_SLOW;
+    return takt_zv_period(mode, cycle_s) < (double)SHAPE_CYCLES_MAX ? NULL : TOO_SLOW;
 }
 
 static const char *check_modes(const struct shape_config *config)
@@ -119,7 +120,7 @@ static const char *check_modes(const struct shape_config *config)
     return wrong;
 }
 
-const char *shape_init(struct shape *s, const struct shape_config *config)
+const char *takt_shape_init(struct shape *s, const struct shape_config *config)
 {
     const char *wrong = check_modes(config);
 
@@ -129,19 +130,19 @@ const char *shape_init(struct shape *s, const struct shape_config *config)
     s->cycle_s = config->cycle_s;
     s->cycles = 0;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        train_set_one(&s->train[i]);
+        takt_train_set_one(&s->train[i]);
         if (i < AXIS_LINEAR_COUNT) {
             make_train(config, i, &s->train[i]);
         }
     }
     align(s);
-    shape_restart(s, &(const struct point){{0}});
+    takt_shape_restart(s, &(const struct point){{0}});
     return s->cycles < SHAPE_CYCLES_MAX ? NULL : TOO_SLOW;
 }
 
 /* -- the cycle -- */
 
-void shape_restart(struct shape *s, const struct point *at)
+void takt_shape_restart(struct shape *s, const struct point *at)
 {
     s->start = *at;
     s->known = 0;
@@ -149,7 +150,7 @@ void shape_restart(struct shape *s, const struct point *at)
     s->still = s->cycles;
 }
 
-/* What came in so many cycles ago. */
+/* What came in this many cycles ago. */
 static const struct point *past(const struct shape *s, uint32_t cycles)
 {
     return cycles < s->known ? &s->input[(s->newest - cycles) % SHAPE_CYCLES_MAX] : &s->start;
@@ -168,7 +169,7 @@ static double mean(const struct shape *s, unsigned axis)
     return now + away;
 }
 
-void shape_cycle(struct shape *s, struct point *set)
+void takt_shape_cycle(struct shape *s, struct point *set)
 {
     const bool stands = point_is_same(past(s, 0), set);
 
@@ -185,12 +186,12 @@ void shape_cycle(struct shape *s, struct point *set)
     }
 }
 
-bool shape_is_settled(const struct shape *s)
+bool takt_shape_is_settled(const struct shape *s)
 {
     return s->still >= s->cycles;
 }
 
-const struct point *shape_input(const struct shape *s)
+const struct point *takt_shape_input(const struct shape *s)
 {
     return past(s, 0);
 }
@@ -208,12 +209,12 @@ static double leave(double limit, double below, double change)
     return maths_max(limit / (1.0 + 2.0 * below), limit - below * change);
 }
 
-void shape_leave(const struct shape *s, struct plan_limits *limits)
+void takt_shape_leave(const struct shape *s, struct plan_limits *limits)
 {
     const double reach_s = (double)s->cycles * s->cycle_s;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const double below = train_below_zero(&s->train[i]);
+        const double below = takt_train_below_zero(&s->train[i]);
 
         limits->jerk_mm_s3[i] /= 1.0 + 2.0 * below;
         limits->acceleration_mm_s2[i] =

@@ -23,7 +23,7 @@
 #define SHAPE_CYCLES_MAX 1024
 
 struct shape_config {
-    /* The train that a mode asks for, such as zv_train. Its weights are not below 0. */
+    /* The train that a mode asks for, such as takt_zv_train. Its weights are not below 0. */
     void (*train)(const struct shape_mode *mode, double cycle_s, struct train *t);
     bool keeps_way; /* and the tool neither cuts bends nor swings out of them */
     double cycle_s;
@@ -42,21 +42,21 @@ struct shape {
 };
 
 /* The axes stand at 0. NULL: good; else why these modes cannot be shaped in this cycle. */
-const char *shape_init(struct shape *s, const struct shape_config *config);
+const char *takt_shape_init(struct shape *s, const struct shape_config *config);
 
 /* The axes stand here, and have always stood. */
-void shape_restart(struct shape *s, const struct point *at);
+void takt_shape_restart(struct shape *s, const struct point *at);
 
 /* The next setpoint goes in, and what is sent instead of it comes out, in its place. */
-void shape_cycle(struct shape *s, struct point *set);
+void takt_shape_cycle(struct shape *s, struct point *set);
 
 /* Does what is sent stand, if what comes in goes on to stand? */
-bool shape_is_settled(const struct shape *s);
+bool takt_shape_is_settled(const struct shape *s);
 
 /* What came in last. */
-const struct point *shape_input(const struct shape *s);
+const struct point *takt_shape_input(const struct shape *s);
 
 /* Takes from the planner's limits what impulses of negative weight add to what they are given. */
-void shape_leave(const struct shape *s, struct plan_limits *limits);
+void takt_shape_leave(const struct shape *s, struct plan_limits *limits);
 
 #endif

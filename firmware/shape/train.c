@@ -4,12 +4,12 @@
 
 #include <assert.h>
 
-void train_set_none(struct train *t)
+void takt_train_set_none(struct train *t)
 {
     t->count = 0;
 }
 
-void train_set_one(struct train *t)
+void takt_train_set_one(struct train *t)
 {
     t->count = 1;
     t->impulse[0] = (struct impulse){0, 1.0};
@@ -27,9 +27,9 @@ static void add_whole(struct train *t, uint32_t cycles, double weight)
     t->impulse[t->count++] = (struct impulse){cycles, weight};
 }
 
-void train_add(struct train *t, double cycles, double weight)
+void takt_train_add(struct train *t, double cycles, double weight)
 {
-    const double whole = maths_floor(cycles);
+    const double whole = takt_maths_floor(cycles);
     const double part = cycles - whole;
 
     add_whole(t, (uint32_t)whole, (1.0 - part) * weight);
@@ -38,7 +38,7 @@ void train_add(struct train *t, double cycles, double weight)
     }
 }
 
-void train_normalise(struct train *t)
+void takt_train_normalise(struct train *t)
 {
     double sum = 0.0;
 
@@ -50,11 +50,11 @@ void train_normalise(struct train *t)
     }
 }
 
-void train_append(struct train *t, const struct train *second)
+void takt_train_append(struct train *t, const struct train *second)
 {
     const struct train first = *t;
 
-    train_set_none(t);
+    takt_train_set_none(t);
     for (uint32_t i = 0; i < first.count; i++) {
         for (uint32_t k = 0; k < second->count; k++) {
             add_whole(t, first.impulse[i].cycles + second->impulse[k].cycles,
@@ -63,7 +63,7 @@ void train_append(struct train *t, const struct train *second)
     }
 }
 
-double train_mean(const struct train *t)
+double takt_train_mean(const struct train *t)
 {
     double mean = 0.0;
 
@@ -73,9 +73,9 @@ double train_mean(const struct train *t)
     return mean;
 }
 
-double train_spread(const struct train *t)
+double takt_train_spread(const struct train *t)
 {
-    const double mean = train_mean(t);
+    const double mean = takt_train_mean(t);
     double spread = 0.0;
 
     for (uint32_t i = 0; i < t->count; i++) {
@@ -86,7 +86,7 @@ double train_spread(const struct train *t)
     return spread;
 }
 
-double train_below_zero(const struct train *t)
+double takt_train_below_zero(const struct train *t)
 {
     double sum = 0.0;
 
@@ -96,7 +96,7 @@ double train_below_zero(const struct train *t)
     return sum;
 }
 
-uint32_t train_length(const struct train *t)
+uint32_t takt_train_length(const struct train *t)
 {
     uint32_t length = 0;
 

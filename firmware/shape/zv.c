@@ -2,7 +2,7 @@
 
 #include "base/maths.h"
 
-double zv_period(const struct shape_mode *mode, double cycle_s)
+double takt_zv_period(const struct shape_mode *mode, double cycle_s)
 {
     return 1.0 / (mode->hz * cycle_s * maths_sqrt(1.0 - mode->damping * mode->damping));
 }
@@ -14,16 +14,16 @@ double zv_period(const struct shape_mode *mode, double cycle_s)
  *
  *     w_0 = sin theta      w_d = -r^d sin (d + 1) theta      w_(d+1) = r^(d+1) sin d theta
  */
-void zv_train(const struct shape_mode *mode, double cycle_s, struct train *t)
+void takt_zv_train(const struct shape_mode *mode, double cycle_s, struct train *t)
 {
     const double w = 2.0 * MATHS_PI * mode->hz;
-    const double theta = 2.0 * MATHS_PI / zv_period(mode, cycle_s);
-    const double d = maths_floor(MATHS_PI / theta);
+    const double theta = 2.0 * MATHS_PI / takt_zv_period(mode, cycle_s);
+    const double d = takt_maths_floor(MATHS_PI / theta);
     const double decay = mode->damping * w * cycle_s;
 
-    train_set_none(t);
-    train_add(t, 0.0, maths_sin(theta));
-    train_add(t, d, -maths_exp(-decay * d) * maths_sin((d + 1.0) * theta));
-    train_add(t, d + 1.0, maths_exp(-decay * (d + 1.0)) * maths_sin(d * theta));
-    train_normalise(t);
+    takt_train_set_none(t);
+    takt_train_add(t, 0.0, takt_maths_sin(theta));
+    takt_train_add(t, d, -takt_maths_exp(-decay * d) * takt_maths_sin((d + 1.0) * theta));
+    takt_train_add(t, d + 1.0, takt_maths_exp(-decay * (d + 1.0)) * takt_maths_sin(d * theta));
+    takt_train_normalise(t);
 }

@@ -17,9 +17,9 @@ struct shape_mode {
 /* A mode above this part of the cycle's rate cannot be shaped: half of its period is less than two cycles. */
 #define SHAPE_HZ_CYCLE_MAX 0.25
 
-/* Of its free swing, cycles. */
-double zv_period(const struct shape_mode *mode, double cycle_s);
+/* Period of its free swing, cycles. */
+double takt_zv_period(const struct shape_mode *mode, double cycle_s);
 
-void zv_train(const struct shape_mode *mode, double cycle_s, struct train *t);
+void takt_zv_train(const struct shape_mode *mode, double cycle_s, struct train *t);
 
 #endif

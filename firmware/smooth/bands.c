@@ -71,7 +71,7 @@ static void factor(struct relax *x, const struct window *w, unsigned group)
     }
 }
 
-void bands_build(struct relax *x, const struct window *w, const struct route *r, float weight)
+void takt_bands_build(struct relax *x, const struct window *w, const struct route *r, float weight)
 {
     for (unsigned g = 0; g < r->slots.groups; g++) {
         fill(x, w, g, weight);
@@ -105,7 +105,7 @@ static void solve_front(struct relax *x, const struct window *w, unsigned group)
     }
 }
 
-void bands_step(struct relax *x, struct window *w, unsigned group)
+void takt_bands_step(struct relax *x, struct window *w, unsigned group)
 {
     const unsigned first = group * w->capacity;
     const lanes *restrict v = x->step + first;

@@ -7,8 +7,8 @@
 #include "smooth/relax.h"
 
 /* K' R K for the tolerance weighed so much, and factors it: of the samples that are not fixed. */
-void bands_build(struct relax *x, const struct window *w, const struct route *r, float weight);
+void takt_bands_build(struct relax *x, const struct window *w, const struct route *r, float weight);
 /* Solves for the steps of one group of lanes, and takes them. */
-void bands_step(struct relax *x, struct window *w, unsigned group);
+void takt_bands_step(struct relax *x, struct window *w, unsigned group);
 
 #endif

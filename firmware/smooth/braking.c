@@ -25,7 +25,7 @@ static float way_braked(const struct braking_limits *l, float v, float b, float 
     return way(v, -b, -l->jerk, rise) + way(v1, -p, 0.0f, hold) + way(v2, -p, l->jerk, fall);
 }
 
-float braking_way(const struct braking_limits *l, float feed, float acceleration, float to)
+float takt_braking_way(const struct braking_limits *l, float feed, float acceleration, float to)
 {
     const float b = single_clamp(-acceleration, 0.0f, l->acceleration);
     float at = 0.0f;

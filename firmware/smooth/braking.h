@@ -1,5 +1,5 @@
 /*
- * Slowing down along a path under an acceleration and a jerk: what the nominal feed is judged by.
+ * Slowing down along a path under an acceleration and a jerk: what the nominal feed is verified by.
  *
  *     feed |‾‾\                 acceleration |  \        /
  *          |   \                             |   \______/      -p, at most A
@@ -18,6 +18,6 @@ struct braking_limits {
  * The way from a feed and an acceleration until the feed is another one, at most as high, with no acceleration: the one
  * there is ends first, then braking begins. 0 where braking need only end.
  */
-float braking_way(const struct braking_limits *l, float feed, float acceleration, float to);
+float takt_braking_way(const struct braking_limits *l, float feed, float acceleration, float to);
 
 #endif

@@ -4,22 +4,22 @@
 #include "smooth/single.h"
 
 /* In single precision. */
-static const float joint_share = (float)BLOCK_SHARE_MAX;
-static const float joint_acceleration = (float)JOINT_ACCELERATION;
+static const float junction_share = (float)BLOCK_JERK_BUDGET_MAX;
+static const float junction_acceleration = (float)JUNCTION_ACCELERATION;
 static const float arc_acceleration = (float)ARC_ACCELERATION;
 static const float arc_jerk = (float)ARC_JERK;
 static const float ramp_normal = (float)RAMP_NORMAL;
 static const float ramp_along = (float)RAMP_ALONG;
 static const float override_max = (float)BLOCK_OVERRIDE_MAX;
-static const float cycles_apart = (float)JOINT_CYCLES_APART;
-static const float least_cycles = (float)JOINT_LEAST_CYCLES;
-static const float worth = (float)JOINT_WORTH;
+static const float cycles_apart = (float)JUNCTION_CYCLES_APART;
+static const float least_cycles = (float)JUNCTION_LEAST_CYCLES;
+static const float worth = (float)JUNCTION_WORTH;
 
 /* Steps in which a feed is looked for that can be held. */
 #define SLOWER     0.9f
 #define SLOWER_MAX 64
 
-/* A bent element that is no arc is gone along in lines that leave it by this part of the tolerance. */
+/* A curved element that is no arc is gone along in lines that leave it by this part of the tolerance. */
 #define STRAIGHT_PART 0.02f
 
 /* What bounds the exact path on an element: mm of route and s. */
@@ -30,13 +30,13 @@ struct course {
     float jerk;
 };
 
-/* Of a line: what each axis leaves along it. */
+/* Bounds on a line: what each axis leaves along it. */
 static void bound_line(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                        struct course *c)
 {
     float d[AXIS_COUNT];
 
-    (void)route_direction(r, index, route_element(r, index)->start_mm, d);
+    (void)takt_route_direction(r, index, route_element(r, index)->start_mm, d);
     c->acceleration = SINGLE_INFINITY;
     c->jerk = SINGLE_INFINITY;
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -51,7 +51,7 @@ static void bound_line(const struct route *r, const struct smooth_limits *machin
     }
 }
 
-/* The highest feed at a joint: D v / cycle^2 + 3/4 K v^2 / cycle within a part of J, D v / cycle of A (plan/joint.c). */
+/* The highest feed at a junction: D v / cycle^2 + 3/4 K v^2 / cycle within a part of J, D v / cycle of A (plan/junction.c). */
 static float alone_feed(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                         float reach)
 {
@@ -60,15 +60,15 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
     float k[2][AXIS_COUNT];
     float feed = SINGLE_INFINITY;
 
-    route_corner(r, index, d[0], d[1]);
-    (void)route_curvature(r, index - 1, route_element(r, index)->start_mm, k[0]);
-    (void)route_curvature(r, index, route_element(r, index)->start_mm, k[1]);
+    takt_route_corner(r, index, d[0], d[1]);
+    (void)takt_route_curvature(r, index - 1, route_element(r, index)->start_mm, k[0]);
+    (void)takt_route_curvature(r, index, route_element(r, index)->start_mm, k[1]);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const unsigned axis = r->slots.axis[i];
         const float turn = single_abs(d[1][i] - d[0][i]) / r->slots.weight[i];
         const float bend = single_abs(k[1][i] - k[0][i]) / r->slots.weight[i];
-        const float j = joint_share * (float)machine->jerk_mm_s3[axis] * cycle;
-        const float a = joint_acceleration * (float)machine->acceleration_mm_s2[axis] * cycle;
+        const float j = junction_share * (float)machine->jerk_mm_s3[axis] * cycle;
+        const float a = junction_acceleration * (float)machine->acceleration_mm_s2[axis] * cycle;
 
         if (turn > 0.0f) {
             const float most = single_min(j * cycle, a) / turn;
@@ -76,7 +76,7 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
             feed = single_min(feed, most > reach ? single_sqrt(most * reach) : most);
         }
         if (bend > 0.0f) {
-            feed = single_min(feed, single_sqrt(j / ((float)JOINT_BEND * bend)));
+            feed = single_min(feed, single_sqrt(j / ((float)JUNCTION_BEND * bend)));
         }
     }
     return feed;
@@ -87,7 +87,7 @@ static float length_of(const struct route *r, uint32_t index)
     return (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
 }
 
-/* May the joint at the start of an element be passed, and take of the jerk beside it? What came before may be forgotten. */
+/* May the junction at the start of an element be passed, and take of the jerk beside it? What came before may be forgotten. */
 static bool may_pass(const struct route *r, const struct smooth_limits *machine, uint32_t index)
 {
     const float cycle = (float)machine->cycle_s;
@@ -105,7 +105,7 @@ static bool may_pass(const struct route *r, const struct smooth_limits *machine,
            least_cycles * jerk * cycle * cycle;
 }
 
-/* What a bent element leaves in any direction, and how much of a circle it is. */
+/* What a curved element leaves in any direction, and how much of a circle it is. */
 struct bend {
     float jerk;
     float acceleration;
@@ -119,7 +119,7 @@ static float bend_acceleration(const struct route *r, const struct smooth_limits
     float d[AXIS_COUNT];
     float most = SINGLE_INFINITY;
 
-    (void)route_direction(r, index, route_element(r, index)->start_mm, d);
+    (void)takt_route_direction(r, index, route_element(r, index)->start_mm, d);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float part = k[i] != 0.0f ? 1.0f : single_abs(d[i]);
         const float a = r->slots.weight[i] * (float)machine->acceleration_mm_s2[r->slots.axis[i]];
@@ -180,19 +180,19 @@ static float hold_time_on_line(const struct route *r, const struct smooth_limits
  * v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A. A turn leaves the less for braking the faster it is: it is gone along no
  * faster than it can be held on in the time that a line takes.
  */
-static void bound_bent(const struct route *r, const struct smooth_limits *machine, uint32_t index,
-                       struct course *c)
+static void bound_curved(const struct route *r, const struct smooth_limits *machine, uint32_t index,
+                         struct course *c)
 {
     const struct route_element *e = route_element(r, index);
     float k[AXIS_COUNT];
     const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
-    const float curvature = route_curvature(r, index, e->start_mm, k); /* k is used below */
-    const struct bend b = {.jerk = (joined ? 1.0f - joint_share : 1.0f) * e->along.jerk,
+    const float curvature = takt_route_curvature(r, index, e->start_mm, k); /* k is used below */
+    const struct bend b = {.jerk = (joined ? 1.0f - junction_share : 1.0f) * e->along.jerk,
                            .radius = 1.0f / curvature,
                            .acceleration = bend_acceleration(r, machine, index, k)};
     const float most = hold_time_on_line(r, machine);
 
-    c->feed = single_min(c->feed, single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
+    c->feed = single_min(c->feed, takt_single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
     c->feed = single_min(c->feed, single_sqrt(arc_acceleration * b.acceleration * b.radius));
     for (unsigned i = 0; i < SLOWER_MAX && hold_time(&b, c->feed, (float)machine->windows) > most;
          i++) {
@@ -208,8 +208,8 @@ static struct course course_of(const struct route *r, const struct smooth_limits
     struct course c = {.length = (float)(route_end_of(r, index) - maths_max(from_mm, e->start_mm)),
                        .feed = e->feed_mm_s};
 
-    if (e->bent) {
-        bound_bent(r, machine, index, &c);
+    if (e->curved) {
+        bound_curved(r, machine, index, &c);
     } else {
         bound_line(r, machine, index, &c);
     }
@@ -222,22 +222,24 @@ static float ramp_time(float change, float a, float j)
     return change * j >= a * a ? change / a + a / j : 2.0f * single_sqrt(change / j);
 }
 
-/* Does it take so much less time to pass a joint than to rest there (plan/joint.c)? */
+/* Does it take so much less time to pass a junction than to rest there (plan/junction.c)? */
 static bool is_worth_passing(const struct course *before, const struct course *after, float feed)
 {
     const float a = single_min(before->acceleration, after->acceleration);
     const float j = single_min(before->jerk, after->jerk);
     const float length = single_min(before->length, after->length);
-    const float over = single_min(single_sqrt(2.0f * length * a), single_cbrt(length * length * j));
+    const float over =
+        single_min(single_sqrt(2.0f * length * a), takt_single_cbrt(length * length * j));
     const float top = single_min(single_min(before->feed, after->feed), over);
     const float fall = single_max(0.0f, top - feed);
 
-    return fall * ramp_time(fall, a, (1.0f - joint_share) * j) <=
+    return fall * ramp_time(fall, a, (1.0f - junction_share) * j) <=
            worth * top * ramp_time(top, a, j);
 }
 
 /* 0: the axes rest. */
-static float joint_feed(const struct route *r, const struct smooth_limits *machine, uint32_t index)
+static float junction_feed(const struct route *r, const struct smooth_limits *machine,
+                           uint32_t index)
 {
     const struct course before = course_of(r, machine, 0.0, index - 1);
     const struct course after = course_of(r, machine, 0.0, index);
@@ -251,12 +253,12 @@ static float joint_feed(const struct route *r, const struct smooth_limits *machi
                : feed;
 }
 
-bool exact_rests(const struct route *r, const struct smooth_limits *machine, uint32_t index)
+bool takt_exact_rests(const struct route *r, const struct smooth_limits *machine, uint32_t index)
 {
-    return joint_feed(r, machine, index) == 0.0f;
+    return junction_feed(r, machine, index) == 0.0f;
 }
 
-/* Elements between two joints that are not passed at full feed, and the feeds there. */
+/* Elements between two junctions that are not passed at full feed, and the feeds there. */
 struct span {
     uint32_t first, end;
     double from_mm;
@@ -309,12 +311,12 @@ static float least_time(const struct route *r, const struct smooth_limits *machi
 {
     const float j = s->jerk / (float)machine->windows;
     const float full = single_min(s->acceleration, single_sqrt(s->feed * j));
-    const float low = single_min(s->acceleration, single_cbrt(s->length * j * j));
+    const float low = single_min(s->acceleration, takt_single_cbrt(s->length * j * j));
 
     return single_min(time_with(r, machine, s, full), time_with(r, machine, s, low));
 }
 
-/* The elements from the first one on to the next joint that is not passed at full feed. */
+/* The elements from the first one on to the next junction that is not passed at full feed. */
 static void find_span(const struct route *r, const struct smooth_limits *machine, uint32_t end,
                       struct span *s)
 {
@@ -327,10 +329,10 @@ static void find_span(const struct route *r, const struct smooth_limits *machine
     s->stop = 0.0f;
     for (s->end = s->first + 1; s->end < end; s->end++) {
         const struct course next = course_of(r, machine, 0.0, s->end);
-        const float joint = joint_feed(r, machine, s->end);
+        const float junction = junction_feed(r, machine, s->end);
 
-        if (joint < single_min(c.feed, next.feed)) {
-            s->stop = joint;
+        if (junction < single_min(c.feed, next.feed)) {
+            s->stop = junction;
             return;
         }
         c = next;
@@ -341,8 +343,8 @@ static void find_span(const struct route *r, const struct smooth_limits *machine
     }
 }
 
-float exact_time(const struct route *r, const struct smooth_limits *machine, double at_mm,
-                 uint32_t element, uint32_t end)
+float takt_exact_time(const struct route *r, const struct smooth_limits *machine, double at_mm,
+                      uint32_t element, uint32_t end)
 {
     struct span s = {.first = element, .from_mm = at_mm};
     float time = 0.0f;
@@ -360,7 +362,7 @@ float exact_time(const struct route *r, const struct smooth_limits *machine, dou
 static double straight_end(const struct route *r, uint32_t element, double at_mm)
 {
     const float straight =
-        route_straight(r, element, at_mm, STRAIGHT_PART * (float)r->tolerance_mm);
+        takt_route_straight(r, element, at_mm, STRAIGHT_PART * (float)r->tolerance_mm);
 
     return maths_min(route_end_of(r, element), at_mm + (double)straight);
 }
@@ -374,7 +376,7 @@ static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
     float d[AXIS_COUNT];
     bool turns = false;
 
-    (void)route_direction(r, element, route_element(r, element)->start_mm, d);
+    (void)takt_route_direction(r, element, route_element(r, element)->start_mm, d);
     for (unsigned i = 0; i < r->slots.count; i++) {
         turns = turns || (r->slots.axis[i] >= AXIS_LINEAR_COUNT && d[i] != 0.0f);
     }
@@ -395,17 +397,17 @@ static void limit_arc(const struct route *r, const struct smooth_limits *machine
 static bool go_to(const struct route *r, uint32_t element, double to_mm, const struct point *start,
                   double p[], struct move *move, struct curve *curve)
 {
-    route_place(r, element, to_mm, p);
-    route_scatter(r, p, &move->end);
-    return move_curve(move, start, curve);
+    takt_route_place(r, element, to_mm, p);
+    takt_route_scatter(r, p, &move->end);
+    return takt_move_curve(move, start, curve);
 }
 
-bool exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
-                struct move *move, struct curve *curve)
+bool takt_exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
+                     struct move *move, struct curve *curve)
 {
     const uint32_t element = w->element[0];
     const double at_mm = w->at_mm[0];
-    const bool arc = route_arc(r, element, at_mm, move);
+    const bool arc = takt_route_arc(r, element, at_mm, move);
     const enum move_kind kind = move->kind;
     const enum move_kind line = kind == MOVE_RAPID ? MOVE_RAPID : MOVE_FEED;
     const bool beside = begins_on_route(r, element, arc);
@@ -413,8 +415,8 @@ bool exact_next(struct window *w, const struct route *r, const struct smooth_lim
     struct point start;
     double p[AXIS_COUNT];
 
-    window_sample(w, r, 0, p);
-    route_scatter(r, p, &start);
+    takt_window_sample(w, r, 0, p);
+    takt_route_scatter(r, p, &start);
     move->kind = line;
     bool goes = go_to(r, element, to_mm, &start, p, move, curve);
 
@@ -426,6 +428,6 @@ bool exact_next(struct window *w, const struct route *r, const struct smooth_lim
     if (arc && goes && move->kind == kind) {
         limit_arc(r, machine, element, at_mm, curve, move);
     }
-    window_stand(w, r, p, to_mm, element);
+    takt_window_stand(w, r, p, to_mm, element);
     return goes;
 }

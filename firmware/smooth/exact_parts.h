@@ -1,5 +1,5 @@
 /*
- * Parts of the axes' limits that motions of the exact path take, and when a joint is passed. plan/block.c and plan/joint.c, which
+ * Parts of the axes' limits that motions of the exact path take, and when a junction is passed. plan/block.c and plan/junction.c, which
  * say why, go by them; exact.c tells by them how long that takes.
  */
 #ifndef TAKT_SMOOTH_EXACT_PARTS_H
@@ -14,24 +14,24 @@
 /* Limits of a block are found for overrides up to this. */
 #define BLOCK_OVERRIDE_MAX 1.2
 
-/* Of jerk that blocks leave to joints at most, and of acceleration that a joint may use with all of that. */
-#define BLOCK_SHARE_MAX    0.5
-#define JOINT_ACCELERATION 0.1
+/* Part of jerk that blocks leave to junctions at most, and of acceleration that a junction may use with all of that. */
+#define BLOCK_JERK_BUDGET_MAX 0.5
+#define JUNCTION_ACCELERATION 0.1
 
-/* Joints no farther apart add up in the third difference; those whose blocks last less than twice that are crowded. */
-#define JOINT_CYCLES_NEAR  3.0
-#define JOINT_CYCLES_APART (2.0 * JOINT_CYCLES_NEAR)
+/* Junctions no farther apart add up in the third difference; those whose blocks last less than twice that are crowded. */
+#define JUNCTION_CYCLES_NEAR  3.0
+#define JUNCTION_CYCLES_APART (2.0 * JUNCTION_CYCLES_NEAR)
 
 /*
- * A joint feed below so many times jerk x cycle^2, the jerk that the largest share leaves, is too slow to be landed at: the
- * axes stop.
+ * A junction feed below this many times jerk x cycle^2, the jerk that the largest share leaves, is too slow to be
+ * landed at: the axes stop.
  */
-#define JOINT_LEAST_CYCLES 4.0
+#define JUNCTION_LEAST_CYCLES 4.0
 
-/* To be passed a joint must take less than this part of the time of a stop: landing on it takes some as well. */
-#define JOINT_WORTH 0.75
+/* To be passed a junction must take less than this part of the time of a stop: landing on it takes some as well. */
+#define JUNCTION_WORTH 0.75
 
-/* What is left of the third difference of a step of acceleration at a joint: the peak of the quadratic B-spline. */
-#define JOINT_BEND 0.75
+/* What is left of the third difference of a step of acceleration at a junction: the peak of the quadratic B-spline. */
+#define JUNCTION_BEND 0.75
 
 #endif

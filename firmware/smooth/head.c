@@ -7,8 +7,8 @@ static unsigned most_samples(const struct route *r)
     return SMOOTH_HEAD_MAX / r->slots.groups;
 }
 
-void head_keep(struct smooth_head *h, const struct window *w, const struct route *r,
-               unsigned proved)
+void takt_head_keep(struct smooth_head *h, const struct window *w, const struct route *r,
+                    unsigned proved)
 {
     const unsigned most = most_samples(r);
 
@@ -23,7 +23,7 @@ void head_keep(struct smooth_head *h, const struct window *w, const struct route
     }
 }
 
-void head_take(const struct smooth_head *h, struct window *w, const struct route *r)
+void takt_head_take(const struct smooth_head *h, struct window *w, const struct route *r)
 {
     const unsigned most = most_samples(r);
 

@@ -17,10 +17,10 @@ struct smooth_head {
     lanes_int x[SMOOTH_HEAD_MAX]; /* one group of lanes after the other */
 };
 
-/* Of a window, so many pieces of which were proved. */
-void head_keep(struct smooth_head *h, const struct window *w, const struct route *r,
-               unsigned proved);
+/* Keeps the beginning of a window. proved: how many of its pieces were. */
+void takt_head_keep(struct smooth_head *h, const struct window *w, const struct route *r,
+                    unsigned proved);
 /* The window is what was kept again. */
-void head_take(const struct smooth_head *h, struct window *w, const struct route *r);
+void takt_head_take(const struct smooth_head *h, struct window *w, const struct route *r);
 
 #endif

@@ -30,7 +30,7 @@ static double longest_ramp(const struct smooth_limits *limits, unsigned axes)
     return longest;
 }
 
-/* Of the axis that crosses the tolerance soonest. */
+/* Interval by the axis that crosses the tolerance soonest. */
 static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
                                double tolerance_mm)
 {
@@ -39,7 +39,7 @@ static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((axes >> i & 1U) != 0) {
             const double p = tolerance_mm / smooth_weight(i);
-            const double jerk = INTERVAL_OF_JERK * maths_cbrt(p / curve->jerk_mm_s3[i]);
+            const double jerk = INTERVAL_OF_JERK * takt_maths_cbrt(p / curve->jerk_mm_s3[i]);
             const double acceleration =
                 INTERVAL_OF_ACCELERATION * maths_sqrt(p / curve->acceleration_mm_s2[i]);
 
@@ -49,11 +49,12 @@ static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
     return maths_max(curve->cycle_s, soonest);
 }
 
-double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm)
+double takt_interval_of(const struct smooth_limits *machine, const struct route *r,
+                        double tolerance_mm)
 {
     struct smooth_limits curve = *machine;
 
-    smooth_limit(&curve, r->tolerance_mm);
+    takt_smooth_limit(&curve, r->tolerance_mm);
     return maths_max(soonest_interval(&curve, r->moved, tolerance_mm),
                      longest_ramp(machine, r->moved) * WINDOW_OF_RAMP / window_capacity(r));
 }

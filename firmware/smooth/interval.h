@@ -10,6 +10,7 @@
  * What a way of a tolerance takes the quickest of the axes that move on the route, by the limits of its curve; at least a cycle,
  * and so long that none of them needs many windows to reach its velocity. s.
  */
-double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm);
+double takt_interval_of(const struct smooth_limits *machine, const struct route *r,
+                        double tolerance_mm);
 
 #endif

@@ -5,7 +5,7 @@
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
 #define CHORD_PART 0.25
 
-/* Of the acceleration that a corner within the tolerance comes to by jerk alone, cbrt(P J^2). */
+/* Acceleration at a corner within the tolerance, in parts of what jerk alone comes to, cbrt(P J^2). */
 #define CORNER_PART 1.5
 
 /*
@@ -38,7 +38,7 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
         if ((limits->axes >> i & 1U) != 0) {
             const double j = limits->jerk_mm_s3[i] * weight;
             const double a = maths_min(limits->acceleration_mm_s2[i] * weight,
-                                       CORNER_PART * maths_cbrt(tolerance_mm * j * j));
+                                       CORNER_PART * takt_maths_cbrt(tolerance_mm * j * j));
 
             square += a * a;
         }
@@ -46,7 +46,7 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
     limits->chord_mm = maths_sqrt(square) * t;
 }
 
-void smooth_limit(struct smooth_limits *limits, double tolerance_mm)
+void takt_smooth_limit(struct smooth_limits *limits, double tolerance_mm)
 {
     limit_reached(limits);
     limit_chord(limits, tolerance_mm);

@@ -6,9 +6,9 @@
 
 #include "smooth/lanes.h"
 
-/* Elements of the programmed path that are known at one time, and how many of them may be bent. */
+/* Elements of the programmed path that are known at one time, and how many of them may be curved. */
 #define SMOOTH_ELEMENTS_MAX 96
-#define SMOOTH_BENT_MAX     32
+#define SMOOTH_CURVED_MAX   32
 
 /* Coordinates of their starts: with more than three axes there are half as many elements. */
 #define SMOOTH_COORDINATES_MAX (3 * SMOOTH_ELEMENTS_MAX)
@@ -19,7 +19,7 @@
 /* Samples that are smoothed together; half as many where a machine has more axes than lanes. */
 #define SMOOTH_SAMPLES_MAX 80
 
-/* Pieces of the curve that lie before the lead point while programs are read in time. */
+/* Pieces of the curve that lie before the trapezoidal reference while programs are read in time. */
 #define SMOOTH_AHEAD_PIECES 256
 
 /* Samples at each end of the window that stay where they are: a cubic piece has four. */
@@ -32,7 +32,7 @@ struct smooth_limits {
     double jerk_mm_s3[AXIS_COUNT];
     double cycle_s; /* control cycle */
     double
-        windows; /* in all windows of its ramp law there are so many of the first one (plan/law.h) */
+        windows; /* all windows of its ramp law together, as a multiple of the first one (plan/ramp_profile.h) */
     double
         chord_mm; /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
 };
@@ -49,6 +49,6 @@ static inline double smooth_weight(int axis)
 }
 
 /* What of a machine's limits is of use for a curve within a tolerance; sets chord_mm. */
-void smooth_limit(struct smooth_limits *limits, double tolerance_mm);
+void takt_smooth_limit(struct smooth_limits *limits, double tolerance_mm);
 
 #endif

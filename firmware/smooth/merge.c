@@ -2,8 +2,8 @@
 
 #include "base/maths.h"
 
-void merge_open(struct merge *m, const struct move *move, uint32_t number,
-                const struct curve *curve)
+void takt_merge_open(struct merge *m, const struct move *move, uint32_t number,
+                     const struct curve *curve)
 {
     m->open = true;
     m->move = *move;
@@ -64,8 +64,8 @@ static bool passes_all(const struct merge *m, const struct point *end, double wi
     return true;
 }
 
-bool merge_take(struct merge *m, const struct move *move, uint32_t number,
-                const struct curve *curve, double within_mm)
+bool takt_merge_take(struct merge *m, const struct move *move, uint32_t number,
+                     const struct curve *curve, double within_mm)
 {
     struct curve longer;
 
@@ -75,7 +75,8 @@ bool merge_take(struct merge *m, const struct move *move, uint32_t number,
     m->point[m->points] = m->curve.end;
     m->points++;
     if (!passes_all(m, &curve->end, within_mm) ||
-        !curve_set_line(&longer, &m->curve.start, &curve->end) || longer.rotary != curve->rotary) {
+        !takt_curve_set_line(&longer, &m->curve.start, &curve->end) ||
+        longer.rotary != curve->rotary) {
         m->points--;
         return false;
     }

@@ -25,10 +25,10 @@ struct merge {
     unsigned points;
 };
 
-void merge_open(struct merge *m, const struct move *move, uint32_t number,
-                const struct curve *curve);
+void takt_merge_open(struct merge *m, const struct move *move, uint32_t number,
+                     const struct curve *curve);
 /* True when the line now reaches to the end of this motion, passing every programmed end within within_mm. */
-bool merge_take(struct merge *m, const struct move *move, uint32_t number,
-                const struct curve *curve, double within_mm);
+bool takt_merge_take(struct merge *m, const struct move *move, uint32_t number,
+                     const struct curve *curve, double within_mm);
 
 #endif

@@ -6,7 +6,7 @@
 #define ALONG 0.95f
 
 /* Part of the axes' limits for the curvature of arcs. */
-#define BENT 0.9f
+#define CURVED 0.9f
 
 /* A corner may use the tolerance on both sides: the curve swings out before it and cuts in at it. */
 #define SIDES 2.0f
@@ -14,7 +14,7 @@
 /* Where directions differ by less, rounding of them is what differs. */
 #define TURN_MIN 1e-6f
 
-/* How many elements a corner is looked at together with, and when: so many elements after it have come. */
+/* How many elements a corner is looked at together with, and how many after it must have come. */
 #define NEIGHBOURS 8
 #define BEHIND     4
 
@@ -42,10 +42,10 @@ static float feed_of(const struct curve_bounds *b, const struct route_slots *slo
             feed = single_min(feed, slots->velocity_mm_s[i] / first);
         }
         if (second > 0.0f) {
-            feed = single_min(feed, single_sqrt(BENT * slots->acceleration_mm_s2[i] / second));
+            feed = single_min(feed, single_sqrt(CURVED * slots->acceleration_mm_s2[i] / second));
         }
         if (third > 0.0f) {
-            feed = single_min(feed, single_cbrt(BENT * slots->jerk_mm_s3[i] / third));
+            feed = single_min(feed, takt_single_cbrt(CURVED * slots->jerk_mm_s3[i] / third));
         }
     }
     return feed;
@@ -94,11 +94,12 @@ static unsigned moved_by(const struct curve_bounds *b)
     return axes;
 }
 
-void nominal_set(struct route_element *e, const struct curve *curve, float per_mm, struct route *r)
+void takt_nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
+                      struct route *r)
 {
     struct curve_bounds b;
 
-    curve_bound(curve, &b);
+    takt_curve_bound(curve, &b);
     const float feed = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
 
     e->feed_mm_s = per_mm * feed;
@@ -127,7 +128,7 @@ static float feed_over(const struct route_slots *slots, const float d[], float w
     if (square == SINGLE_INFINITY) {
         return square;
     }
-    return single_min(single_sqrt(square), single_cbrt(cube));
+    return single_min(single_sqrt(square), takt_single_cbrt(cube));
 }
 
 /* Both sides of a corner while it is looked at from farther and farther away. */
@@ -156,7 +157,7 @@ static bool widen(const struct route *r, struct surroundings *s)
             return false;
         }
         s->left--;
-        (void)route_direction(r, s->left, route_end_of(r, s->left), s->before);
+        (void)takt_route_direction(r, s->left, route_end_of(r, s->left), s->before);
         s->left_mm += length_of(r, s->left);
         return true;
     }
@@ -164,7 +165,7 @@ static bool widen(const struct route *r, struct surroundings *s)
         return false;
     }
     s->right++;
-    (void)route_direction(r, s->right, route_element(r, s->right)->start_mm, s->after);
+    (void)takt_route_direction(r, s->right, route_element(r, s->right)->start_mm, s->after);
     s->right_mm += length_of(r, s->right);
     return true;
 }
@@ -182,7 +183,7 @@ static float corner_feed(struct route *r, uint32_t index)
     float best = 0.0f;
     float d[AXIS_COUNT];
 
-    route_corner(r, index, s.before, s.after);
+    takt_route_corner(r, index, s.before, s.after);
     s.left_mm = length_of(r, index - 1);
     s.right_mm = length_of(r, index);
     at(r, index)->turn = (uint16_t)(turn_of(&s, r->slots.count, d) / ROUTE_TURN + 0.5f);
@@ -223,7 +224,8 @@ static void find_binding(struct route *r, uint32_t changed)
         const bool bound = e->binds;
 
         limits = lower(limits, e->along);
-        e->binds = braking_way(&limits, e->start_mm_s, 0.0f, to) <= (float)(end_mm - e->start_mm);
+        e->binds =
+            takt_braking_way(&limits, e->start_mm_s, 0.0f, to) <= (float)(end_mm - e->start_mm);
         if (!e->binds) {
             continue;
         }
@@ -236,8 +238,8 @@ static void find_binding(struct route *r, uint32_t changed)
     }
 }
 
-bool nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,
-                    float acceleration)
+bool takt_nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,
+                         float acceleration)
 {
     const struct route_element *e = route_element(r, element);
     const float rise = single_max(acceleration, 0.0f);
@@ -254,10 +256,10 @@ bool nominal_allows(const struct route *r, uint32_t element, double at_mm, float
     const double end_mm = i < r->count ? route_element(r, i)->start_mm : r->end_mm;
     const float to = i < r->count ? route_element(r, i)->start_mm_s : 0.0f;
 
-    return braking_way(&limits, feed, acceleration, to) <= (float)(end_mm - at_mm);
+    return takt_braking_way(&limits, feed, acceleration, to) <= (float)(end_mm - at_mm);
 }
 
-void nominal_update(struct route *r)
+void takt_nominal_update(struct route *r)
 {
     const uint32_t newest = r->count - 1;
     uint32_t changed = newest;

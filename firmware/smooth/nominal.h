@@ -8,12 +8,13 @@
 #include "smooth/route.h"
 
 /* Feed and acceleration of one element by its programmed feed and its curvature; the axes that it moves. */
-void nominal_set(struct route_element *e, const struct curve *curve, float per_mm, struct route *r);
+void takt_nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
+                      struct route *r);
 /* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
-void nominal_update(struct route *r);
+void takt_nominal_update(struct route *r);
 
 /* At this feed and acceleration, can all be met that is known to follow? */
-bool nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,
-                    float acceleration);
+bool takt_nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,
+                         float acceleration);
 
 #endif

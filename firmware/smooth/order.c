@@ -4,11 +4,11 @@
 
 #include <string.h>
 
-/* A bent element is gone along in lines that leave it by this part of the tolerance at most. */
-#define BENT_OFF 0.01f
+/* A curved element is gone along in lines that leave it by this part of the tolerance at most. */
+#define CURVED_OFF 0.01f
 
 /* A line as long as its arc leaves its tangent stays within a quarter of that of it; half of it, lest the bend grows. */
-#define BENT_LEAVES (2.0f * BENT_OFF)
+#define CURVED_LEAVES (2.0f * CURVED_OFF)
 
 /* Lines of the route beside one chord, at most: what lies farther on is come to with the next ones. */
 #define LINKS_MAX 256
@@ -41,7 +41,7 @@ static bool is_there(struct parts p)
     return p.first <= p.last;
 }
 
-/* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the foot, d away. */
+/* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the closest point, d away. */
 static struct parts near_point(const struct route *r, const float start[], const float way[],
                                const float point[], float within_mm)
 {
@@ -53,10 +53,10 @@ static struct parts near_point(const struct route *r, const float start[], const
         dot += (point[i] - start[i]) * way[i];
         square += way[i] * way[i];
     }
-    const float foot = square > 0.0f ? dot / square : 0.0f;
+    const float closest = square > 0.0f ? dot / square : 0.0f;
 
     for (unsigned i = 0; i < r->slots.count; i++) {
-        const float off = point[i] - start[i] - foot * way[i];
+        const float off = point[i] - start[i] - closest * way[i];
 
         off_square += off * off;
     }
@@ -67,7 +67,7 @@ static struct parts near_point(const struct route *r, const float start[], const
     }
     const float half = square > 0.0f ? single_sqrt(room / square) : 1.0f;
 
-    return (struct parts){single_max(foot - half, 0.0f), single_min(foot + half, 1.0f)};
+    return (struct parts){single_max(closest - half, 0.0f), single_min(closest + half, 1.0f)};
 }
 
 static float length_of(const struct route *r, const float way[])
@@ -80,27 +80,29 @@ static float length_of(const struct route *r, const float way[])
     return single_sqrt(square);
 }
 
-/* Of a line as far as anything on it can be near the chord, of a bend as far as it is straight. */
+/*
+ * Where a link ends: on a line where nothing can be near the chord any more, on a bend where it is no longer straight.
+ */
 static double link_end(const struct route *r, const struct order_chord *chord, struct link *l,
                        float chord_mm)
 {
     const double end_mm = route_end_of(r, l->element);
     const float tolerance_mm = (float)r->tolerance_mm;
-    const bool bent = route_element(r, l->element)->bent;
-    const float reach_mm = bent
-                               ? route_straight(r, l->element, l->at_mm, BENT_LEAVES * tolerance_mm)
-                               : chord_mm + 3.0f * tolerance_mm;
+    const bool curved = route_element(r, l->element)->curved;
+    const float reach_mm =
+        curved ? takt_route_straight(r, l->element, l->at_mm, CURVED_LEAVES * tolerance_mm)
+               : chord_mm + 3.0f * tolerance_mm;
 
-    l->within_mm = chord->within_mm - (bent ? BENT_OFF * tolerance_mm : 0.0f);
-    l->ends = bent || l->at_mm + (double)reach_mm >= end_mm;
+    l->within_mm = chord->within_mm - (curved ? CURVED_OFF * tolerance_mm : 0.0f);
+    l->ends = curved || l->at_mm + (double)reach_mm >= end_mm;
     return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
 }
 
 static void set_at(const struct route *r, struct link *l, double at_mm)
 {
     l->at_mm = at_mm;
-    l->element = route_find(r, at_mm, l->element);
-    route_place(r, l->element, at_mm, l->at);
+    l->element = takt_route_find(r, at_mm, l->element);
+    takt_route_place(r, l->element, at_mm, l->at);
 }
 
 /* The route from at_mm on. */
@@ -112,7 +114,7 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
     l->end_mm = link_end(r, chord, l, chord_mm);
     l->passed =
         route_programmed(r, l->element) < chord->least_mm_s[route_element(r, l->element)->rotary];
-    route_point(r, l->end_mm, &hint, l->end);
+    takt_route_point(r, l->end_mm, &hint, l->end);
     for (unsigned i = 0; i < r->slots.count; i++) {
         l->start[i] = r->slots.weight[i] * (float)(l->at[i] - chord->from[i]);
         l->way[i] = r->slots.weight[i] * (float)(l->end[i] - l->at[i]);
@@ -131,8 +133,8 @@ static void go_on(const struct route *r, struct link *l)
 static bool is_corner(const struct route *r, uint32_t element)
 {
     return element < r->count &&
-           (route_turn(r, element) > CORNER_MIN || route_element(r, element)->bent ||
-            route_element(r, element - 1)->bent);
+           (route_turn(r, element) > CORNER_MIN || route_element(r, element)->curved ||
+            route_element(r, element - 1)->curved);
 }
 
 /*
@@ -181,7 +183,7 @@ static void add_span(struct order *o, double first_mm, double last_mm, double be
     o->count++;
 }
 
-/* Of a link the places near the end of the chord. */
+/* Adds the places of a link that are near the end of the chord. */
 static void add_link(struct order *o, const struct route *r, const struct order_chord *chord,
                      const struct link *l)
 {
@@ -195,7 +197,7 @@ static void add_link(struct order *o, const struct route *r, const struct order_
     }
 }
 
-void order_start(struct order *o, double at_mm, uint32_t element)
+void takt_order_start(struct order *o, double at_mm, uint32_t element)
 {
     o->count = 1;
     o->element = element;
@@ -208,7 +210,7 @@ void order_start(struct order *o, double at_mm, uint32_t element)
  * the tolerance of the chord's end can be come to then; and its own end, where that is passed after its start. To have come to
  * the end of a link is not to have passed it.
  */
-void order_go(struct order *o, const struct route *r, const struct order_chord *chord)
+void takt_order_go(struct order *o, const struct route *r, const struct order_chord *chord)
 {
     const struct order before = *o;
     const float chord_mm = length_of(r, chord->way);
@@ -242,7 +244,7 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
     }
 }
 
-double order_place(const struct order *o, double at_mm)
+double takt_order_place(const struct order *o, double at_mm)
 {
     unsigned i = o->count - 1;
 

@@ -36,15 +36,15 @@ struct order_chord {
 };
 
 /* The curve begins at a place of the route. */
-void order_start(struct order *o, double at_mm, uint32_t element);
+void takt_order_start(struct order *o, double at_mm, uint32_t element);
 /* It goes on along a chord. */
-void order_go(struct order *o, const struct route *r, const struct order_chord *chord);
+void takt_order_go(struct order *o, const struct route *r, const struct order_chord *chord);
 /* Can it have come to this place, or farther? */
 static inline bool order_reaches(const struct order *o, double at_mm)
 {
     return o->count > 0 && o->span[o->count - 1].last_mm >= at_mm;
 }
 /* The place nearest before this one that it can have come to, or else the first one. */
-double order_place(const struct order *o, double at_mm);
+double takt_order_place(const struct order *o, double at_mm);
 
 #endif

@@ -12,7 +12,7 @@
  * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and
  * falls: in half of what it is rounded over, and as long again until the setpoint has come so far.
  */
-double smooth_standing_s(const struct smooth *s)
+double takt_smooth_standing_s(const struct smooth *s)
 {
     return STANDING * s->change.rounding_s + STANDING_CYCLES * s->limits.cycle_s;
 }
@@ -24,29 +24,29 @@ static void set_control(const struct smooth *s, unsigned i, struct point *contro
     const bool end = s->ends && w->at_end && i + SMOOTH_FIXED >= w->count;
     double p[AXIS_COUNT];
 
-    window_sample(w, &s->route, i, p);
+    takt_window_sample(w, &s->route, i, p);
     memset(control, 0, sizeof(*control));
     for (unsigned k = 0; k < s->route.slots.count; k++) {
         control->at[s->route.slots.axis[k]] = end ? s->route.end[k] : p[k];
     }
 }
 
-uint32_t smooth_tell(struct smooth *s, uint32_t element)
+uint32_t takt_smooth_tell(struct smooth *s, uint32_t element)
 {
     s->told = element < s->told ? s->told : element;
     return s->told;
 }
 
-void smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
+void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
 {
     const struct window *w = &s->window;
     const unsigned i = s->taken;
     const uint32_t element = w->element[i + 1];
-    const uint32_t told = smooth_tell(s, element);
-    struct judge_need need;
-    struct judge_rate rate;
+    const uint32_t told = takt_smooth_tell(s, element);
+    struct verifier_need need;
+    struct verifier_rate rate;
 
-    route_move(&s->route, told, &s->move);
+    takt_route_move(&s->route, told, &s->move);
     piece->move = &s->move;
     piece->number = route_element(&s->route, told)->number;
     piece->rotary = route_element(&s->route, element)->rotary;
@@ -54,28 +54,28 @@ void smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     for (unsigned k = 0; k < 4; k++) {
         set_control(s, i + k, &piece->control[k]);
     }
-    judge_need(w, &s->route, i, &need);
-    judge_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
+    takt_verifier_need(w, &s->route, i, &need);
+    takt_verifier_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
     piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by =
-        (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
+        (double)takt_verifier_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
     piece->change.rounded = piece->change.by / s->change.rounding_s;
     piece->stop = s->stops && s->taken + 1 == s->ready;
     piece->last = s->finished && w->at_end && i + 4 == w->count;
 }
 
-void smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                  bool leaves)
+void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
+                       bool leaves)
 {
     s->stand_rotary = of->rotary;
     s->stand_number = of->number;
     s->stand_at = *at;
-    s->standing = (unsigned)(smooth_standing_s(s) / s->window.interval_s) + 1;
+    s->standing = (unsigned)(takt_smooth_standing_s(s) / s->window.interval_s) + 1;
     s->leaves = leaves;
 }
 
-void smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
+void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
 {
     const double change_per_s = 2.0 / s->change.rounding_s;
     const struct point at = s->stand_at;
@@ -92,6 +92,6 @@ void smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
         .last = s->standing == 0 && !s->leaves,
     };
     if (piece->last) {
-        smooth_reset(s);
+        takt_smooth_reset(s);
     }
 }

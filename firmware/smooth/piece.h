@@ -7,14 +7,14 @@
 #include "smooth/smooth.h"
 
 /* How long the axes stand where a curve begins and ends at rest, s. */
-double smooth_standing_s(const struct smooth *s);
+double takt_smooth_standing_s(const struct smooth *s);
 /* The latest element that has been told: after a stop the curve goes on from where it can have come to, which may be before. */
-uint32_t smooth_tell(struct smooth *s, uint32_t element);
+uint32_t takt_smooth_tell(struct smooth *s, uint32_t element);
 /* The next one of those that are ready. */
-void smooth_set_piece(struct smooth *s, struct smooth_piece *piece);
+void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece);
 /* at: where the axes stand; of: the piece before or behind; leaves: that is behind. */
-void smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                  bool leaves);
-void smooth_take_standing(struct smooth *s, struct smooth_piece *piece);
+void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
+                       bool leaves);
+void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece);
 
 #endif

@@ -5,7 +5,7 @@
  * With K the rows, z the nearest values that are allowed, u the sums of what was missing, R the weights and a the
  * over-relaxation, one iteration is
  *     c += (K' R K)^-1 K' R (z - u - K c),    t = a K c + (1 - a) z + u,    z = nearest(t),    u = t - z.
- * Of z and u only p = (1 - a) z + u is kept. The rows are counted so that R is 1 but for the tolerance. The matrix has
+ * Only p = (1 - a) z + u is kept of z and u. The rows are counted so that R is 1 but for the tolerance. The matrix has
  * three bands beside its diagonal (bands.c). Where the timing asks for too much there is no such c; the last iterations
  * then favour the tolerance, and the timing is changed.
  */
@@ -19,14 +19,14 @@
 #define ITERATIONS 16
 
 /* Over-relaxation. */
-#define OVER 1.6f
+#define ALPHA 1.6f
 
-/* The last iterations weigh the tolerance so many times more. */
-#define LAST        4
-#define LAST_FAVOUR 30.0f
+/* The last iterations, and how many times more they weigh the tolerance. */
+#define LAST             4
+#define LAST_TUBE_WEIGHT 30.0f
 
 /* How much less acceleration and jerk are preferred to more, inside their boxes. */
-#define CALM 0.3f
+#define BOX_WEIGHT 0.3f
 
 /* Nor do those that leave the chord of two samples by a small part of the tolerance: turn times spacing. */
 #define CORNER_LEAVES 0.5f
@@ -40,26 +40,26 @@
 /* Rows that count more than this, relative to the tolerance, would leave too few digits. */
 #define SCALE_MAX 300.0f
 
-/* Rows of second differences count so many times more than the others: along straights they alone find the ramps. */
+/* Rows of second differences count this many times more than the others: along straights they alone find the ramps. */
 #define BEND_COUNTS 2.0f
 
-/* What the axis of the least acceleration needs counts for all, up to so many times what that of the most needs. */
+/* What the axis of the least acceleration needs counts for all, up to this many times what that of the most needs. */
 #define BEND_SPAN 4.0f
 
-/* What a bent route may leave its tangent by for that to stand for it, as a part of the tolerance. */
-#define BENT 0.05f
+/* What a curved route may leave its tangent by for that to stand for it, as a part of the tolerance. */
+#define CURVED 0.05f
 
 /* How one iteration forms t and p; weight: of the tolerance. */
 struct relax_pass {
-    float over;
-    float calm;
+    float alpha;
+    float box_weight;
     float keep_boxes; /* part of their sums that is kept */
     float keep_near;
     float weight;
     float corner_most; /* tolerance of corners, as a part of the tolerance */
 };
 
-/* Of the slots of a group, the least and the most that a row counts. */
+/* The least and the most that a row counts, over the slots of a group. */
 struct relax_span {
     float least, most;
 };
@@ -72,7 +72,8 @@ static void widen(struct relax_span *span, float per_near)
 
 /*
  * What rows of second and third differences count is the same for all axes of a group, so that one matrix serves them all.
- * Of machines that were tried, with axes up to ten times as quick as others, these came nearest to a matrix for each axis.
+ * On machines that were tried, with axes up to ten times as quick as others, these came nearest to a matrix for each
+ * axis.
  */
 static void set_rows(struct relax_scale *s, const struct route *r, unsigned group,
                      float tolerance_mm, float d)
@@ -121,7 +122,7 @@ static void set_along(struct relax_corners *c, const struct route *r, uint32_t e
     float after[AXIS_COUNT];
     float square = 0.0f;
 
-    route_corner(r, element, before, after);
+    takt_route_corner(r, element, before, after);
     for (unsigned i = 0; i < r->slots.count; i++) {
         before[i] += after[i];
         square += before[i] * before[i];
@@ -140,7 +141,7 @@ static void set_spot(struct relax_corners *c, const struct window *w, const stru
 {
     struct window_spot spot;
 
-    window_nearest(w, r, route_start(r, element), &spot);
+    takt_window_nearest(w, r, route_start(r, element), &spot);
     for (unsigned i = 0; i < r->slots.count; i++) {
         c->spot[i / SMOOTH_LANES * c->capacity + c->count][i % SMOOTH_LANES] = spot.at[i];
     }
@@ -166,7 +167,7 @@ static void add_corner(struct relax_corners *c, const struct window *w, const st
         return;
     }
     c->piece[c->count] = (unsigned char)(i - 1);
-    window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
+    takt_window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
     set_along(c, r, element);
     set_spot(c, w, r, element);
     c->count++;
@@ -188,50 +189,52 @@ static void find_corners(struct relax_corners *c, const struct window *w, const 
     }
 }
 
-/* Direction of the route at a foot, and tolerances in a mm of the route there. */
+/* Direction of the route at a closest point, and tolerances in a mm of the route there. */
 struct relax_ahead {
     uint32_t element; /* of a line it still holds for; else UINT32_MAX */
     float along[SMOOTH_SLOTS_MAX];
     float per_mm;
 };
 
-static void look_ahead(struct relax_ahead *a, const struct route *r, const struct route_foot *foot,
-                       float tolerance_mm)
+static void look_ahead(struct relax_ahead *a, const struct route *r,
+                       const struct route_closest *closest, float tolerance_mm)
 {
-    if (foot->element != a->element) {
-        a->per_mm = route_direction(r, foot->element, foot->at_mm, a->along) / tolerance_mm;
-        a->element = route_element(r, foot->element)->bent ? UINT32_MAX : foot->element;
+    if (closest->element != a->element) {
+        a->per_mm =
+            takt_route_direction(r, closest->element, closest->at_mm, a->along) / tolerance_mm;
+        a->element = route_element(r, closest->element)->curved ? UINT32_MAX : closest->element;
     }
 }
 
 /* The route beside sample i: the nearest point, and as far as the direction there serves for it. */
-static void set_foot(struct relax *x, const struct window *w, const struct route *r, unsigned i,
-                     float tolerance_mm, struct relax_ahead *ahead)
+static void set_closest(struct relax *x, const struct window *w, const struct route *r, unsigned i,
+                        float tolerance_mm, struct relax_ahead *ahead)
 {
     static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
-    struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
+    struct route_closest closest = {.element = w->element[i], .at_mm = w->at_mm[i]};
     struct window_spot spot;
     double from;
     double to;
     double p[AXIS_COUNT];
 
-    window_reach(w, i, &from, &to);
-    window_spot(w, r, i - 1, at_sample, &spot);
-    window_place(w, r, &spot, p);
-    route_foot(r, p, from, to, &foot);
-    look_ahead(ahead, r, &foot, tolerance_mm);
+    takt_window_reach(w, i, &from, &to);
+    takt_window_spot(w, r, i - 1, at_sample, &spot);
+    takt_window_place(w, r, &spot, p);
+    takt_route_closest(r, p, from, to, &closest);
+    look_ahead(ahead, r, &closest, tolerance_mm);
     const float straight =
-        route_straight(r, foot.element, foot.at_mm, BENT * tolerance_mm) / tolerance_mm;
-    const double start = maths_max(from, route_element(r, foot.element)->start_mm);
-    const double end = maths_min(to, route_end_of(r, foot.element));
+        takt_route_straight(r, closest.element, closest.at_mm, CURVED * tolerance_mm) /
+        tolerance_mm;
+    const double start = maths_max(from, route_element(r, closest.element)->start_mm);
+    const double end = maths_min(to, route_end_of(r, closest.element));
 
-    x->low[i] = single_max((float)(start - foot.at_mm) * ahead->per_mm, -straight);
-    x->high[i] = single_min((float)(end - foot.at_mm) * ahead->per_mm, straight);
+    x->low[i] = single_max((float)(start - closest.at_mm) * ahead->per_mm, -straight);
+    x->high[i] = single_min((float)(end - closest.at_mm) * ahead->per_mm, straight);
     for (unsigned k = 0; k < r->slots.count; k++) {
         const unsigned row = k / SMOOTH_LANES * w->capacity + i;
 
-        x->foot[row][k % SMOOTH_LANES] =
-            spot.at[k] + single_round(foot.off[k] / w->weighted_unit_mm[k]);
+        x->closest[row][k % SMOOTH_LANES] =
+            spot.at[k] + single_round(closest.off[k] / w->weighted_unit_mm[k]);
         x->along[row][k % SMOOTH_LANES] = ahead->along[k];
     }
 }
@@ -239,11 +242,11 @@ static void set_foot(struct relax *x, const struct window *w, const struct route
 /* t, z, u of rows that must lie in -most ... most; p is replaced, z - u - k returned. */
 static inline lanes into_box(const struct relax_pass *pass, lanes k, lanes most, lanes *p)
 {
-    const lanes t = pass->over * k + *p;
-    const lanes z = lanes_clamp(t * pass->calm, most);
+    const lanes t = pass->alpha * k + *p;
+    const lanes z = lanes_clamp(t * pass->box_weight, most);
     const lanes u = (t - z) * pass->keep_boxes;
 
-    *p = (1.0f - OVER) * z + u;
+    *p = (1.0f - ALPHA) * z + u;
     return z - u - k;
 }
 
@@ -255,7 +258,7 @@ static inline lanes near_of(lanes *near, lanes now, float weight)
 {
     const lanes e = weight * (*near - now);
 
-    *near *= 1.0f - OVER;
+    *near *= 1.0f - ALPHA;
     return e;
 }
 
@@ -317,11 +320,11 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
     }
 }
 
-/* z of a place t beside sample i, where the route is not straight enough there: within the tolerance of its foot. */
+/* z of a place t beside sample i, where the route is not straight enough there: within the tolerance of its closest point. */
 static void pull_to_route(const struct relax *x, const struct window *w, const struct route *r,
                           float tolerance_mm, unsigned i, lanes z[])
 {
-    struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
+    struct route_closest closest = {.element = w->element[i], .at_mm = w->at_mm[i]};
     double p[AXIS_COUNT];
     double from;
     double to;
@@ -332,39 +335,39 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
         const unsigned l = k % SMOOTH_LANES;
 
         p[k] = w->origin[k] +
-               w->unit_mm[k] * ((double)x->foot[row][l] +
+               w->unit_mm[k] * ((double)x->closest[row][l] +
                                 (double)(x->near[row][l] * x->scale.unit_per_near[g][l]));
     }
-    window_reach(w, i, &from, &to);
-    route_foot(r, p, from, to, &foot);
+    takt_window_reach(w, i, &from, &to);
+    takt_route_closest(r, p, from, to, &closest);
     const float less =
-        foot.distance_mm > tolerance_mm ? 1.0f - tolerance_mm / foot.distance_mm : 0.0f;
+        closest.distance_mm > tolerance_mm ? 1.0f - tolerance_mm / closest.distance_mm : 0.0f;
 
     for (unsigned k = 0; k < r->slots.count; k++) {
         z[k / SMOOTH_LANES][k % SMOOTH_LANES] =
             x->near[k / SMOOTH_LANES * w->capacity + i][k % SMOOTH_LANES] +
-            less * foot.off[k] / tolerance_mm;
+            less * closest.off[k] / tolerance_mm;
     }
 }
 
-/* The curve at the samples, less their feet: now to step, t to near. */
+/* The curve at the samples, less their closest points: now to step, t to near. */
 static void measure_near(struct relax *x, const struct window *w, const struct relax_pass *pass,
                          unsigned group)
 {
     const unsigned first = group * w->capacity;
     const lanes_int *restrict c = w->x + first;
-    const lanes_int *restrict foot = x->foot + first;
+    const lanes_int *restrict closest = x->closest + first;
     lanes *restrict near = x->near + first;
     lanes *restrict step = x->step + first;
-    const float over = pass->over;
+    const float alpha = pass->alpha;
     const lanes per_unit = x->scale.near_per_unit[group];
 
     for (unsigned i = 1; i + 2 < w->count; i++) {
         const lanes_int bend = c[i - 1] - 2 * c[i] + c[i + 1];
-        const lanes now = (lanes_of(c[i] - foot[i]) + lanes_of(bend) * (1.0f / 6.0f)) * per_unit;
+        const lanes now = (lanes_of(c[i] - closest[i]) + lanes_of(bend) * (1.0f / 6.0f)) * per_unit;
 
         step[i] = now;
-        near[i] += over * now;
+        near[i] += alpha * now;
     }
 }
 
@@ -405,7 +408,7 @@ static void pull(struct relax *x, const struct window *w, const struct route *r,
         const lanes u = (x->near[row] - z[g]) * pass->keep_near;
         const lanes e = z[g] - u - x->step[row];
 
-        x->near[row] = z[g] + u * (1.0f / (1.0f - OVER));
+        x->near[row] = z[g] + u * (1.0f / (1.0f - ALPHA));
         x->step[row] = x->near[row] - e;
     }
 }
@@ -450,7 +453,7 @@ static void into_tube(struct relax *x, const struct window *w, const struct rout
         lanes s;
         const lanes square = squares_of(x, w, r->slots.groups, i, &s);
         const lanes_int inside = (s >= lanes_at(x->low + i)) & (s <= lanes_at(x->high + i)) &
-                                 (square - s * s <= (1.0f - BENT) * (1.0f - BENT));
+                                 (square - s * s <= (1.0f - CURVED) * (1.0f - CURVED));
 
         for (unsigned k = 0; k < SMOOTH_LANES && lanes_any(~inside); k++) {
             if (!inside[k] && i + k > 0 && i + k + 2 < w->count) {
@@ -485,7 +488,7 @@ static void into_corner(struct relax *x, const struct window *w, const struct re
         const unsigned row = g * x->corners.capacity + k;
 
         now[g] = corner_of(x, w, g, k);
-        t[g] = pass->over * now[g] + x->corners.state[row];
+        t[g] = pass->alpha * now[g] + x->corners.state[row];
         along += lanes_sum(t[g] * x->corners.along[row]);
         square += lanes_sum(t[g] * t[g]);
     }
@@ -499,7 +502,7 @@ static void into_corner(struct relax *x, const struct window *w, const struct re
         const lanes e = pass->weight * (z - u - now[g]);
         lanes *step = &x->step[g * w->capacity + x->corners.piece[k]];
 
-        x->corners.state[row] = (1.0f - OVER) * z + u;
+        x->corners.state[row] = (1.0f - ALPHA) * z + u;
         for (unsigned j = 0; j < 4; j++) {
             step[j] += x->corners.weight[k][j] * e;
         }
@@ -531,35 +534,36 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     memset(x->near, 0, sizeof x->near);
     memset(x->bend, 0, sizeof x->bend);
     memset(x->twist, 0, sizeof x->twist);
-    memset(x->foot, 0, sizeof x->foot);
+    memset(x->closest, 0, sizeof x->closest);
     memset(x->along, 0, sizeof x->along);
     memset(x->band, 0, sizeof x->band);
     for (unsigned i = 1; i + 2 < w->count; i++) {
-        set_foot(x, w, r, i, tolerance_mm, &ahead);
+        set_closest(x, w, r, i, tolerance_mm, &ahead);
     }
 }
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm)
+void takt_relax_window(struct relax *x, struct window *w, const struct route *r,
+                       double tolerance_mm)
 {
     const float tolerance = (float)tolerance_mm;
-    struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
+    struct relax_pass pass = {.alpha = 1.0f, .box_weight = 1.0f, .weight = 1.0f};
 
     pass.corner_most = 1.0f - r->chord_mm / tolerance;
     begin(x, w, r, tolerance);
-    bands_build(x, w, r, pass.weight);
+    takt_bands_build(x, w, r, pass.weight);
     project(x, w, r, tolerance, &pass);
-    pass.over = OVER;
-    pass.calm = 1.0f / (1.0f + CALM);
+    pass.alpha = ALPHA;
+    pass.box_weight = 1.0f / (1.0f + BOX_WEIGHT);
     pass.keep_boxes = 1.0f;
     for (unsigned i = ITERATIONS; i > 0; i--) {
         for (unsigned g = 0; g < r->slots.groups; g++) {
-            bands_step(x, w, g);
+            takt_bands_step(x, w, g);
         }
         if (i == LAST + 1) {
-            pass.weight = LAST_FAVOUR;
-            bands_build(x, w, r, pass.weight);
+            pass.weight = LAST_TUBE_WEIGHT;
+            takt_bands_build(x, w, r, pass.weight);
         }
-        pass.keep_near = i == LAST + 1 ? 1.0f / LAST_FAVOUR : 1.0f;
+        pass.keep_near = i == LAST + 1 ? 1.0f / LAST_TUBE_WEIGHT : 1.0f;
         if (i > 1) {
             project(x, w, r, tolerance, &pass);
         }

@@ -8,7 +8,7 @@
 
 /*
  * Corners of the route in a window that are looked at one by one, half as many where there are two groups of lanes; of
- * those behind them the judge alone knows.
+ * those behind them the verifier alone knows.
  */
 #define RELAX_CORNERS_MAX 32
 
@@ -38,7 +38,7 @@ struct relax_scale {
     float twist_per_near[SMOOTH_GROUPS_MAX];
     lanes bend_most[SMOOTH_GROUPS_MAX]; /* the boxes, in those */
     lanes twist_most[SMOOTH_GROUPS_MAX];
-    float change; /* of the rate, in an interval (judge.h) */
+    float change; /* of the rate, in an interval (verifier.h) */
     float rounded;
 };
 
@@ -50,12 +50,13 @@ struct relax {
     relax_rows bend;                   /* second differences: in the box of acceleration */
     relax_rows twist;                  /* third differences: in the box of jerk */
     relax_rows step;
-    relax_rows along;                   /* direction of the route at the feet */
-    lanes_int foot[SMOOTH_SAMPLES_MAX]; /* beside each sample on the route */
+    relax_rows along;                      /* direction of the route at the closest points */
+    lanes_int closest[SMOOTH_SAMPLES_MAX]; /* beside each sample on the route */
     float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as that is straight */
     struct relax_corners corners;
 };
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm);
+void takt_relax_window(struct relax *x, struct window *w, const struct route *r,
+                       double tolerance_mm);
 
 #endif

@@ -43,14 +43,14 @@ static void route_limit(struct route *r, const struct smooth_limits *limits, dou
     r->tolerance_mm = tolerance_mm;
 }
 
-void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
+void takt_route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     route_limit(r, limits, tolerance_mm);
     r->moved = 0;
     r->first = 0;
     r->count = 0;
-    r->bent_first = 0;
-    r->bent_count = 0;
+    r->curved_first = 0;
+    r->curved_count = 0;
     r->capacity = r->slots.count > 3 ? SMOOTH_ELEMENTS_MAX / 2 : SMOOTH_ELEMENTS_MAX;
     for (unsigned i = 0; i < SMOOTH_MODES_MAX; i++) {
         r->mode[i].used = 0;
@@ -67,13 +67,13 @@ static bool has_free_mode(const struct route *r)
     return false;
 }
 
-bool route_has_room(const struct route *r)
+bool takt_route_has_room(const struct route *r)
 {
-    return r->count - r->first < r->capacity && r->bent_count - r->bent_first < SMOOTH_BENT_MAX &&
-           has_free_mode(r);
+    return r->count - r->first < r->capacity &&
+           r->curved_count - r->curved_first < SMOOTH_CURVED_MAX && has_free_mode(r);
 }
 
-double route_end(const struct route *r)
+double takt_route_end(const struct route *r)
 {
     return r->count == 0 ? 0.0 : r->end_mm;
 }
@@ -85,7 +85,7 @@ static void gather(const struct route *r, const struct point *p, double by_slot[
     }
 }
 
-void route_scatter(const struct route *r, const double by_slot[], struct point *p)
+void takt_route_scatter(const struct route *r, const double by_slot[], struct point *p)
 {
     memset(p, 0, sizeof(*p));
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -122,14 +122,14 @@ static unsigned char find_mode(struct route *r, const struct move *move)
     return (unsigned char)found;
 }
 
-void route_move(const struct route *r, uint32_t index, struct move *move)
+void takt_route_move(const struct route *r, uint32_t index, struct move *move)
 {
     const struct route_element *e = route_element(r, index);
 
     *move = r->mode[e->mode].move;
     move->line = e->line;
     move->feed_mm_s = move->kind == MOVE_RAPID ? move->feed_mm_s : (double)e->programmed_mm_s;
-    route_scatter(r, route_end_point(r, index), &move->end);
+    takt_route_scatter(r, route_end_point(r, index), &move->end);
 }
 
 /* Weighted length for a mm of a curve, or a rad where only rotary axes move: that of the linear axes is 1. */
@@ -145,9 +145,9 @@ static float weighted_length(const struct curve *curve)
     return single_sqrt(square);
 }
 
-static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
+static void keep_curved(struct route *r, const struct curve *curve, float per_mm)
 {
-    struct route_bent *b = &r->bent[r->bent_count % SMOOTH_BENT_MAX];
+    struct route_curved *b = &r->curved[r->curved_count % SMOOTH_CURVED_MAX];
 
     b->kind = curve->kind;
     b->per_mm = per_mm;
@@ -158,17 +158,17 @@ static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
     } else {
         b->quintic = curve->quintic;
     }
-    r->bent_count++;
+    r->curved_count++;
 }
 
-void route_push(struct route *r, const struct move *move, uint32_t number,
-                const struct curve *curve)
+void takt_route_push(struct route *r, const struct move *move, uint32_t number,
+                     const struct curve *curve)
 {
     struct route_element *e = &r->element[route_slot(r, r->count)];
-    const double start_mm = route_end(r);
+    const double start_mm = takt_route_end(r);
     const float per_mm = weighted_length(curve);
 
-    assert(route_has_room(r));
+    assert(takt_route_has_room(r));
     gather(r, &curve->start, &r->start[(size_t)route_slot(r, r->count) * r->slots.count]);
     gather(r, &curve->end, r->end);
     memset(e, 0, sizeof(*e));
@@ -177,30 +177,30 @@ void route_push(struct route *r, const struct move *move, uint32_t number,
     e->line = move->line;
     e->number = number;
     e->mode = find_mode(r, move) & ROUTE_MODES;
-    e->rotary = curve_is_rotary(curve);
-    e->bent = curve->kind != CURVE_LINE;
-    e->bent_number = (unsigned char)r->bent_count;
-    if (e->bent) {
-        keep_bent(r, curve, per_mm);
+    e->rotary = takt_curve_is_rotary(curve);
+    e->curved = curve->kind != CURVE_LINE;
+    e->curved_number = (unsigned char)r->curved_count;
+    if (e->curved) {
+        keep_curved(r, curve, per_mm);
     }
     e->programmed_mm_s = move->kind == MOVE_RAPID ? SINGLE_INFINITY : (float)move->feed_mm_s;
-    nominal_set(e, curve, per_mm, r);
+    takt_nominal_set(e, curve, per_mm, r);
     r->count++;
-    nominal_update(r);
+    takt_nominal_update(r);
 }
 
-void route_forget(struct route *r, double at_mm)
+void takt_route_forget(struct route *r, double at_mm)
 {
     while (r->first + 1 < r->count && route_end_of(r, r->first) < at_mm) {
         const struct route_element *e = route_element(r, r->first);
 
         r->mode[e->mode].used--;
-        r->bent_first += e->bent ? 1 : 0;
+        r->curved_first += e->curved ? 1 : 0;
         r->first++;
     }
 }
 
-uint32_t route_find(const struct route *r, double at_mm, uint32_t hint)
+uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint)
 {
     uint32_t i = hint < r->first ? r->first : hint;
 
@@ -216,31 +216,32 @@ uint32_t route_find(const struct route *r, double at_mm, uint32_t hint)
     return i;
 }
 
-/* Route for a mm of a bent element. */
+/* Route for a mm of a curved element. */
 static float per_mm_of(const struct route *r, uint32_t index)
 {
-    return r->bent[route_element(r, index)->bent_number % SMOOTH_BENT_MAX].per_mm;
+    return r->curved[route_element(r, index)->curved_number % SMOOTH_CURVED_MAX].per_mm;
 }
 
 /* Its own length at a place on the route. */
-static double bent_place(const struct route *r, uint32_t index, const struct curve *c, double at_mm)
+static double curved_place(const struct route *r, uint32_t index, const struct curve *c,
+                           double at_mm)
 {
     const double s = (at_mm - route_element(r, index)->start_mm) / (double)per_mm_of(r, index);
 
     return maths_clamp(s, 0.0, c->length_mm);
 }
 
-/* The curve of a bent element: outside its plane every axis goes in proportion to the length. */
-static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
+/* The curve of a curved element: outside its plane every axis goes in proportion to the length. */
+static void curved_curve(const struct route *r, uint32_t index, struct curve *c)
 {
     const struct route_element *e = route_element(r, index);
-    const struct route_bent *b = &r->bent[e->bent_number % SMOOTH_BENT_MAX];
+    const struct route_curved *b = &r->curved[e->curved_number % SMOOTH_CURVED_MAX];
 
     c->kind = b->kind;
     c->rotary = e->rotary;
     c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
-    route_scatter(r, route_start(r, index), &c->start);
-    route_scatter(r, route_end_point(r, index), &c->end);
+    takt_route_scatter(r, route_start(r, index), &c->start);
+    takt_route_scatter(r, route_end_point(r, index), &c->end);
     if (b->kind == CURVE_ARC) {
         c->arc = b->arc;
     } else if (b->kind == CURVE_INVOLUTE) {
@@ -251,7 +252,7 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     enum axis first = AXIS_COUNT;
     enum axis second = AXIS_COUNT;
 
-    (void)curve_plane(c, &first, &second);
+    (void)takt_curve_plane(c, &first, &second);
     memset(&c->slope, 0, sizeof c->slope);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const unsigned axis = r->slots.axis[i];
@@ -262,7 +263,7 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     }
 }
 
-void route_place(const struct route *r, uint32_t index, double at_mm, double p[])
+void takt_route_place(const struct route *r, uint32_t index, double at_mm, double p[])
 {
     const struct route_element *e = route_element(r, index);
     const double length = route_end_of(r, index) - e->start_mm;
@@ -270,12 +271,12 @@ void route_place(const struct route *r, uint32_t index, double at_mm, double p[]
     const double *start = route_start(r, index);
     const double *end = route_end_point(r, index);
 
-    if (e->bent && part < 1.0) {
+    if (e->curved && part < 1.0) {
         struct curve c;
         struct point q;
 
-        bent_curve(r, index, &c);
-        curve_point(&c, bent_place(r, index, &c, at_mm), &q);
+        curved_curve(r, index, &c);
+        takt_curve_point(&c, curved_place(r, index, &c, at_mm), &q);
         gather(r, &q, p);
         return;
     }
@@ -284,21 +285,21 @@ void route_place(const struct route *r, uint32_t index, double at_mm, double p[]
     }
 }
 
-void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
+void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
 {
-    *hint = route_find(r, at_mm, *hint);
-    route_place(r, *hint, at_mm, p);
+    *hint = takt_route_find(r, at_mm, *hint);
+    takt_route_place(r, *hint, at_mm, p);
 }
 
-bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move)
+bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move)
 {
     const struct route_element *e = route_element(r, index);
 
-    route_move(r, index, move);
-    if (!e->bent || r->bent[e->bent_number % SMOOTH_BENT_MAX].kind != CURVE_ARC) {
+    takt_route_move(r, index, move);
+    if (!e->curved || r->curved[e->curved_number % SMOOTH_CURVED_MAX].kind != CURVE_ARC) {
         return false;
     }
-    const struct curve_arc *arc = &r->bent[e->bent_number % SMOOTH_BENT_MAX].arc;
+    const struct curve_arc *arc = &r->curved[e->curved_number % SMOOTH_CURVED_MAX].arc;
     const double left = (route_end_of(r, index) - at_mm) / (route_end_of(r, index) - e->start_mm);
     const double turns = maths_abs(arc->sweep_rad) * left / (2.0 * MATHS_PI);
 
@@ -308,25 +309,25 @@ bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move 
     return true;
 }
 
-static void bent_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
+static void curved_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
 {
     struct curve c;
     struct point t;
 
-    bent_curve(r, index, &c);
-    curve_tangent(&c, bent_place(r, index, &c, at_mm), &t);
+    curved_curve(r, index, &c);
+    takt_curve_tangent(&c, curved_place(r, index, &c, at_mm), &t);
     for (unsigned i = 0; i < r->slots.count; i++) {
         direction[i] = (float)t.at[r->slots.axis[i]];
     }
 }
 
-float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
+float takt_route_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
 {
     float square = 0.0f;
     float length = 1.0f;
 
-    if (route_element(r, index)->bent) {
-        bent_direction(r, index, at_mm, direction);
+    if (route_element(r, index)->curved) {
+        curved_direction(r, index, at_mm, direction);
         length = per_mm_of(r, index);
     } else {
         const double *start = route_start(r, index);
@@ -350,20 +351,20 @@ float route_direction(const struct route *r, uint32_t index, double at_mm, float
     return weighted / length;
 }
 
-float route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[])
+float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[])
 {
     struct curve c;
     struct point k;
     float square = 0.0f;
 
     memset(curvature, 0, r->slots.count * sizeof curvature[0]);
-    if (!route_element(r, index)->bent) {
+    if (!route_element(r, index)->curved) {
         return 0.0f;
     }
     const float per_mm = per_mm_of(r, index);
 
-    bent_curve(r, index, &c);
-    curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
+    curved_curve(r, index, &c);
+    takt_curve_curvature(&c, curved_place(r, index, &c, at_mm), &k);
     for (unsigned i = 0; i < r->slots.count; i++) {
         curvature[i] = r->slots.weight[i] * (float)k.at[r->slots.axis[i]] / (per_mm * per_mm);
         square += curvature[i] * curvature[i];
@@ -372,23 +373,23 @@ float route_curvature(const struct route *r, uint32_t index, double at_mm, float
 }
 
 /* s^2 |x''| / 2 = within */
-float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
 {
     float k[AXIS_COUNT];
-    const float curvature = route_curvature(r, index, at_mm, k);
+    const float curvature = takt_route_curvature(r, index, at_mm, k);
 
     return curvature > 0.0f ? single_sqrt(2.0f * within_mm / curvature) : SINGLE_INFINITY;
 }
 
-void route_corner(const struct route *r, uint32_t index, float before[], float after[])
+void takt_route_corner(const struct route *r, uint32_t index, float before[], float after[])
 {
     const double at_mm = route_element(r, index)->start_mm;
 
-    (void)route_direction(r, index - 1, at_mm, before);
-    (void)route_direction(r, index, at_mm, after);
+    (void)takt_route_direction(r, index - 1, at_mm, before);
+    (void)takt_route_direction(r, index, at_mm, after);
 }
 
-static void set_distance(const struct route *r, struct route_foot *f)
+static void set_distance(const struct route *r, struct route_closest *f)
 {
     float square = 0.0f;
 
@@ -399,8 +400,8 @@ static void set_distance(const struct route *r, struct route_foot *f)
 }
 
 /* x + (start - x) + s/length (end - start), s from the nearest place of the whole line. */
-static void foot_on_line(const struct route *r, uint32_t index, const double x[], float low,
-                         float high, struct route_foot *f)
+static void closest_on_line(const struct route *r, uint32_t index, const double x[], float low,
+                            float high, struct route_closest *f)
 {
     const double *start = route_start(r, index);
     const double *end = route_end_point(r, index);
@@ -425,14 +426,14 @@ static void foot_on_line(const struct route *r, uint32_t index, const double x[]
 }
 
 /* By Newton's method: s += (x - p) t / (t t), weighted. */
-static void foot_on_bent(const struct route *r, uint32_t index, const double x[], double low,
-                         double high, double s, struct route_foot *f)
+static void closest_on_curved(const struct route *r, uint32_t index, const double x[], double low,
+                              double high, double s, struct route_closest *f)
 {
     const double per_mm = (double)per_mm_of(r, index);
     struct curve c;
     struct point p;
 
-    bent_curve(r, index, &c);
+    curved_curve(r, index, &c);
     low /= per_mm;
     high /= per_mm;
     s = maths_clamp(s / per_mm, low, high);
@@ -441,7 +442,7 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
         float dot = 0.0f;
         float square = 0.0f;
 
-        curve_point_and_tangent(&c, s, &p, &t);
+        takt_curve_point_and_tangent(&c, s, &p, &t);
         for (unsigned i = 0; i < r->slots.count; i++) {
             const unsigned axis = r->slots.axis[i];
             const float w = r->slots.weight[i] * (float)t.at[axis];
@@ -451,7 +452,7 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
         }
         s = maths_clamp(s + (double)(dot / square), low, high);
     }
-    curve_point(&c, s, &p);
+    takt_curve_point(&c, s, &p);
     for (unsigned i = 0; i < r->slots.count; i++) {
         f->off[i] = r->slots.weight[i] * (float)(p.at[r->slots.axis[i]] - x[i]);
     }
@@ -460,8 +461,8 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
 }
 
 /* The nearest point of one element between two places of the route, looked for from at_mm on. */
-static void foot_on(const struct route *r, uint32_t index, const double x[], double from_mm,
-                    double to_mm, double at_mm, struct route_foot *f)
+static void closest_on(const struct route *r, uint32_t index, const double x[], double from_mm,
+                       double to_mm, double at_mm, struct route_closest *f)
 {
     const struct route_element *e = route_element(r, index);
     const double length = route_end_of(r, index) - e->start_mm;
@@ -469,49 +470,49 @@ static void foot_on(const struct route *r, uint32_t index, const double x[], dou
     const double high = maths_clamp(to_mm - e->start_mm, 0.0, length);
 
     f->element = index;
-    if (e->bent) {
-        foot_on_bent(r, index, x, low, high, at_mm - e->start_mm, f);
+    if (e->curved) {
+        closest_on_curved(r, index, x, low, high, at_mm - e->start_mm, f);
     } else {
-        foot_on_line(r, index, x, (float)low, (float)high, f);
+        closest_on_line(r, index, x, (float)low, (float)high, f);
     }
     set_distance(r, f);
 }
 
 /*
- * Can the element on the other side of a joint be nearer than the foot? From a foot before the joint, a line that goes on
- * at an angle t cannot, unless the joint is within distance tan t; and tan t < 1.2 |turn| of slight turns.
+ * Can the element on the other side of a junction be nearer than the closest point? From a closest point before the junction, a line that goes on
+ * at an angle t cannot, unless the junction is within distance tan t; and tan t < 1.2 |turn| of slight turns.
  */
-static bool is_near_joint(const struct route *r, uint32_t next, double joint, float turn,
-                          const struct route_foot *f)
+static bool is_near_junction(const struct route *r, uint32_t next, double junction, float turn,
+                             const struct route_closest *f)
 {
-    const float away = single_abs((float)(joint - f->at_mm));
+    const float away = single_abs((float)(junction - f->at_mm));
 
-    return f->at_mm == joint || turn > SLIGHT || away < SLIGHT_REACH * turn * f->distance_mm ||
-           route_element(r, next)->bent || route_element(r, f->element)->bent;
+    return f->at_mm == junction || turn > SLIGHT || away < SLIGHT_REACH * turn * f->distance_mm ||
+           route_element(r, next)->curved || route_element(r, f->element)->curved;
 }
 
 /*
- * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless the foot is at the
- * joint already. Near a reversal both sides are near, and the curve is on the first until it has turned.
+ * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless the closest point is at the
+ * junction already. Near a reversal both sides are near, and the curve is on the first until it has turned.
  */
 static void walk(const struct route *r, const double x[], double from_mm, double to_mm, bool onward,
-                 struct route_foot *f)
+                 struct route_closest *f)
 {
     for (;;) {
         const uint32_t next = onward ? f->element + 1 : f->element - 1;
-        const double joint =
+        const double junction =
             onward ? route_end_of(r, f->element) : route_element(r, f->element)->start_mm;
-        struct route_foot other;
+        struct route_closest other;
 
-        if (onward ? next >= r->count || joint > to_mm
-                   : f->element == r->first || joint < from_mm) {
+        if (onward ? next >= r->count || junction > to_mm
+                   : f->element == r->first || junction < from_mm) {
             return;
         }
-        if (!is_near_joint(r, next, joint, route_turn(r, onward ? next : f->element), f)) {
+        if (!is_near_junction(r, next, junction, route_turn(r, onward ? next : f->element), f)) {
             return;
         }
-        foot_on(r, next, x, from_mm, to_mm, joint, &other);
-        const float more = f->at_mm == joint ? 0.0f : NEARER * (float)r->tolerance_mm;
+        closest_on(r, next, x, from_mm, to_mm, junction, &other);
+        const float more = f->at_mm == junction ? 0.0f : NEARER * (float)r->tolerance_mm;
 
         if (!(other.distance_mm + more < f->distance_mm)) {
             return;
@@ -520,13 +521,13 @@ static void walk(const struct route *r, const double x[], double from_mm, double
     }
 }
 
-void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
-                struct route_foot *f)
+void takt_route_closest(const struct route *r, const double x[], double from_mm, double to_mm,
+                        struct route_closest *f)
 {
     const double at = maths_clamp(f->at_mm, from_mm, to_mm);
-    const uint32_t index = route_find(r, at, f->element);
+    const uint32_t index = takt_route_find(r, at, f->element);
 
-    foot_on(r, index, x, from_mm, to_mm, at, f);
+    closest_on(r, index, x, from_mm, to_mm, at, f);
     walk(r, x, from_mm, to_mm, true, f);
     if (f->element == index) {
         walk(r, x, from_mm, to_mm, false, f);

@@ -27,12 +27,12 @@ struct route_slots {
     float velocity_mm_s[SMOOTH_SLOTS_MAX];
     float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
     float jerk_mm_s3[SMOOTH_SLOTS_MAX];
-    float change_per_s;   /* how fast the rate may change on every piece (judge.h), */
+    float change_per_s;   /* how fast the rate may change on every piece (verifier.h), */
     float rounded_per_s2; /* and begin to */
 };
 
 /* What a curve has that a line between the same two points does not have; its slope is found from those. */
-struct route_bent {
+struct route_curved {
     enum curve_kind kind;
     float per_mm; /* length of the route for a mm of it: 1 without rotary axes */
     union {
@@ -52,9 +52,9 @@ struct route_element {
     struct braking_limits along; /* nominal acceleration and jerk along it */
     float start_mm_s;            /* highest nominal feed at its start, for the corner there */
     uint16_t turn;               /* |change of direction| at its start, in ROUTE_TURN */
-    unsigned char bent_number;   /* bent elements before it, modulo 256 */
+    unsigned char curved_number; /* curved elements before it, modulo 256 */
     unsigned char mode : 3;      /* index among the route's modes */
-    unsigned char bent : 1;
+    unsigned char curved : 1;
     unsigned char binds : 1;  /* its start is slower than what follows asks for */
     unsigned char rotary : 1; /* only rotary axes move: its feed counts radians */
 };
@@ -79,33 +79,33 @@ struct route {
     float chord_per_bend; /* and does for c_0 - 2 c_1 + c_2 */
     unsigned moved;       /* axes of all elements so far, by bit */
     double tolerance_mm;
-    uint32_t first;                  /* elements forgotten so far */
-    uint32_t count;                  /* elements pushed so far */
-    uint32_t capacity;               /* elements there is room for */
-    unsigned bent_first, bent_count; /* bent ones forgotten, and pushed */
+    uint32_t first;                      /* elements forgotten so far */
+    uint32_t count;                      /* elements pushed so far */
+    uint32_t capacity;                   /* elements there is room for */
+    unsigned curved_first, curved_count; /* curved ones forgotten, and pushed */
     double end_mm;
     double end[AXIS_COUNT]; /* of the newest element; by slot */
     double start[SMOOTH_COORDINATES_MAX];
     struct route_element element[SMOOTH_ELEMENTS_MAX];
-    struct route_bent bent[SMOOTH_BENT_MAX];
+    struct route_curved curved[SMOOTH_CURVED_MAX];
     struct route_mode mode[SMOOTH_MODES_MAX];
 };
 
 /* A place on the route near to a point. */
-struct route_foot {
+struct route_closest {
     uint32_t element;            /* index of an element */
     double at_mm;                /* on the route */
     float off[SMOOTH_SLOTS_MAX]; /* from the point to it, weighted */
     float distance_mm;
 };
 
-void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
-bool route_has_room(const struct route *r);
+void takt_route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
+bool takt_route_has_room(const struct route *r);
 /* Appends a curve that begins where the last one ended. Needs room. */
-void route_push(struct route *r, const struct move *move, uint32_t number,
-                const struct curve *curve);
+void takt_route_push(struct route *r, const struct move *move, uint32_t number,
+                     const struct curve *curve);
 /* Elements that end before at_mm are no longer asked for. */
-void route_forget(struct route *r, double at_mm);
+void takt_route_forget(struct route *r, double at_mm);
 
 /* Where the element is kept. */
 static inline uint32_t route_slot(const struct route *r, uint32_t index)
@@ -134,35 +134,35 @@ static inline double route_end_of(const struct route *r, uint32_t index)
 {
     return index + 1 < r->count ? route_element(r, index + 1)->start_mm : r->end_mm;
 }
-double route_end(const struct route *r);
+double takt_route_end(const struct route *r);
 /* The motion it belongs to, but for centres and turns of arcs. */
-void route_move(const struct route *r, uint32_t index, struct move *move);
+void takt_route_move(const struct route *r, uint32_t index, struct move *move);
 /* The programmed feed; infinite for a rapid. */
 static inline float route_programmed(const struct route *r, uint32_t index)
 {
     return route_element(r, index)->programmed_mm_s;
 }
-/* Index of the element at a place; the later one at a joint. hint: an index near by. */
-uint32_t route_find(const struct route *r, double at_mm, uint32_t hint);
-void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);
+/* Index of the element at a place; the later one at a junction. hint: an index near by. */
+uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint);
+void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);
 /* On an element; a place outside is its nearer end. */
-void route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
-void route_scatter(const struct route *r, const double by_slot[], struct point *p);
+void takt_route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
+void takt_route_scatter(const struct route *r, const double by_slot[], struct point *p);
 /* The motion of an element, if it is an arc with its centre and the turns from a place on; false: it is none. */
-bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
+bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
 /* Second derivative by the route, weighted; 0 on lines. Returns its size, 1/mm. */
-float route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
+float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
 /* Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a mm of it. */
-float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
+float takt_route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
 /* How far from that place to both sides an element leaves its tangent by no more than so much. */
-float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm);
+float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm);
 /* Those at both sides of the start of an element that is not the first. */
-void route_corner(const struct route *r, uint32_t index, float before[], float after[]);
+void takt_route_corner(const struct route *r, uint32_t index, float before[], float after[]);
 /*
  * The nearest place to x between from_mm and to_mm that can be walked to from f->at_mm in f->element without moving
  * away: at a retrace it stays on the branch it is on.
  */
-void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
-                struct route_foot *f);
+void takt_route_closest(const struct route *r, const double x[], double from_mm, double to_mm,
+                        struct route_closest *f);
 
 #endif

@@ -23,7 +23,7 @@ static float near_cbrt(float x)
 }
 
 /* From within a twentieth of it y <- (2 y + x/y^2)/3. */
-float single_cbrt(float x)
+float takt_single_cbrt(float x)
 {
     if (!(x > 0.0f)) {
         return 0.0f;

@@ -42,6 +42,6 @@ static inline int single_round(float x)
 }
 
 /* Cube root of 1e-15 <= x <= 1e15 but for some 1e-6 of it; of 0, or less than that, too large at most. */
-float single_cbrt(float x);
+float takt_single_cbrt(float x);
 
 #endif

@@ -15,7 +15,7 @@
 #define ROUNDS       1
 #define ROUNDS_FIRST 4
 
-/* So many sixteenths of the window's pieces are kept each time. */
+/* Sixteenths of the window's pieces that are kept each time. */
 #define KEPT_SIXTEENTHS 9U
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
@@ -26,20 +26,20 @@
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
 
-/* Of what it left the tolerance by before, a slower piece leaves it by so much at most, or slower is no help. */
+/* A slower piece leaves the tolerance by at most this part of what it left it by before, or slower is no help. */
 #define NEARER 0.95f
 
 /* What a microcontroller is ready to give for smoothing. */
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
                "too much memory");
 
-void smooth_init(struct smooth *s, const struct smooth_limits *limits)
+void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits)
 {
     s->limits = *limits;
-    smooth_reset(s);
+    takt_smooth_reset(s);
 }
 
-void smooth_reset(struct smooth *s)
+void takt_smooth_reset(struct smooth *s)
 {
     s->open = false;
     s->finished = false;
@@ -47,7 +47,7 @@ void smooth_reset(struct smooth *s)
     s->taken = 0;
 }
 
-bool smooth_takes(const struct move *move, const struct curve *curve)
+bool takt_smooth_takes(const struct move *move, const struct curve *curve)
 {
     if (move->path != PATH_BLEND || !(move->tolerance_mm > 0.0)) {
         return false;
@@ -55,18 +55,18 @@ bool smooth_takes(const struct move *move, const struct curve *curve)
     if (move->kind >= MOVE_THREAD || move->feed_rev_mm != 0.0) {
         return false;
     }
-    return !curve_starts_at_cusp(curve) && !curve_ends_at_cusp(curve);
+    return !takt_curve_starts_at_cusp(curve) && !takt_curve_ends_at_cusp(curve);
 }
 
-bool smooth_joins(const struct smooth *s, const struct move *move)
+bool takt_smooth_joins(const struct smooth *s, const struct move *move)
 {
     return !s->open || (!s->finished && move->tolerance_mm == s->merge.move.tolerance_mm &&
                         move->merge_mm == s->merge.move.merge_mm);
 }
 
-bool smooth_has_room(const struct smooth *s)
+bool takt_smooth_has_room(const struct smooth *s)
 {
-    return !s->open || (!s->finished && route_has_room(&s->route));
+    return !s->open || (!s->finished && takt_route_has_room(&s->route));
 }
 
 /* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
@@ -76,19 +76,19 @@ static double merged_within(const struct move *move)
 }
 
 /* How the rate may change: as the axes allow that move on the route. What others do is nothing to it. */
-static void find_change(const struct smooth *s, double interval_s, struct judge_change *change)
+static void find_change(const struct smooth *s, double interval_s, struct verifier_change *change)
 {
     struct smooth_limits limits = s->limits;
 
     limits.axes &= s->route.moved;
-    smooth_limit(&limits, s->route.tolerance_mm);
-    judge_change(&limits, interval_s, change);
+    takt_smooth_limit(&limits, s->route.tolerance_mm);
+    takt_verifier_change(&limits, interval_s, change);
 }
 
 /* What merging uses of the tolerance makes no interval shorter. */
 static double find_interval(const struct smooth *s)
 {
-    return interval_of(&s->limits, &s->route, s->merge.move.tolerance_mm);
+    return takt_interval_of(&s->limits, &s->route, s->merge.move.tolerance_mm);
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
@@ -102,7 +102,7 @@ static void set_interval(struct smooth *s)
     s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->route.chord_per_bend =
         (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
-    window_init(&s->window, &s->route, interval_s);
+    takt_window_init(&s->window, &s->route, interval_s);
 }
 
 /* What merging may use of the tolerance is not there for smoothing. */
@@ -111,8 +111,8 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
-    smooth_limit(&limits, tolerance_mm);
-    route_init(&s->route, &limits, tolerance_mm);
+    takt_smooth_limit(&limits, tolerance_mm);
+    takt_route_init(&s->route, &limits, tolerance_mm);
     s->window.count = 0;
     s->open = true;
     s->ready = 0;
@@ -124,7 +124,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->since = (struct worth_since){.element = 0};
     s->starts = true;
     s->standing = 0;
-    order_start(&s->order, 0.0, 0);
+    takt_order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->tried_mm = 0.0;
     s->tried = 0;
@@ -144,32 +144,32 @@ static void begin_anew(struct smooth *s)
 static void close_merge(struct smooth *s)
 {
     if (s->merge.open) {
-        route_push(&s->route, &s->merge.move, s->merge.number, &s->merge.curve);
+        takt_route_push(&s->route, &s->merge.move, s->merge.number, &s->merge.curve);
         s->merge.open = false;
     }
 }
 
-void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
-                 const struct curve *curve)
+void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number,
+                      const struct curve *curve)
 {
-    assert(smooth_has_room(s) && smooth_joins(s, move));
+    assert(takt_smooth_has_room(s) && takt_smooth_joins(s, move));
     if (!s->open) {
         begin(s, move);
     }
-    if (merge_take(&s->merge, move, number, curve, merged_within(move))) {
+    if (takt_merge_take(&s->merge, move, number, curve, merged_within(move))) {
         return;
     }
     close_merge(s);
-    merge_open(&s->merge, move, number, curve);
+    takt_merge_open(&s->merge, move, number, curve);
 }
 
-bool smooth_is_line(const struct smooth *s)
+bool takt_smooth_is_line(const struct smooth *s)
 {
     return s->open && !s->finished && s->merge.open && s->merge.curve.kind == CURVE_LINE &&
            s->merge.points == 0 && s->route.count == 0;
 }
 
-void smooth_finish(struct smooth *s)
+void takt_smooth_finish(struct smooth *s)
 {
     if (s->open) {
         close_merge(s);
@@ -183,7 +183,7 @@ static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, do
     const struct route_element *e = route_element(&s->route, element);
     const float ahead = (float)(known_mm - at_mm);
 
-    return braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
+    return takt_braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
 }
 
 static bool last_feels_end(const struct smooth *s, double known_mm)
@@ -196,7 +196,7 @@ static bool last_feels_end(const struct smooth *s, double known_mm)
 /* Is the end known, or no more of the route can be? */
 static bool is_all_known(const struct smooth *s)
 {
-    return s->finished || !route_has_room(&s->route);
+    return s->finished || !takt_route_has_room(&s->route);
 }
 
 /* The route has gone on since: samples that were slow before its end only, or that end itself, are taken anew. */
@@ -204,7 +204,7 @@ static void forget_end(struct smooth *s)
 {
     struct window *w = &s->window;
 
-    if (w->count <= SMOOTH_FIXED || !(s->known_mm < route_end(&s->route))) {
+    if (w->count <= SMOOTH_FIXED || !(s->known_mm < takt_route_end(&s->route))) {
         return;
     }
     w->at_end = false;
@@ -217,7 +217,7 @@ static void forget_end(struct smooth *s)
 static bool needs_other_interval(struct smooth *s)
 {
     const bool more = s->moved != s->route.moved;
-    struct judge_change change;
+    struct verifier_change change;
 
     s->moved = s->route.moved;
     if (!more) {
@@ -234,37 +234,37 @@ static bool fill(struct smooth *s)
     struct window *w = &s->window;
 
     if (s->route.count == 0 ||
-        (!is_all_known(s) && feels_end(s, s->tried_mm, s->tried, route_end(&s->route)))) {
+        (!is_all_known(s) && feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route)))) {
         return false;
     }
     if (w->count == 0) {
         set_interval(s);
-        window_start(w, &s->route);
+        takt_window_start(w, &s->route);
     } else if (s->head.proved == 0 && needs_other_interval(s)) {
         begin_anew(s);
     }
     forget_end(s);
     const unsigned before = w->count;
 
-    window_extend(w, &s->route);
+    takt_window_extend(w, &s->route);
     s->tried_mm = w->at_mm[w->count - 1];
     s->tried = w->element[w->count - 1];
-    if (!is_all_known(s) && (w->at_end || last_feels_end(s, route_end(&s->route)))) {
+    if (!is_all_known(s) && (w->at_end || last_feels_end(s, takt_route_end(&s->route)))) {
         w->count = before;
         w->at_end = false;
         return false;
     }
-    s->known_mm = route_end(&s->route);
+    s->known_mm = takt_route_end(&s->route);
     return true;
 }
 
 static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
 {
-    relax_window(&scratch->relax, &s->window, &s->route, AIM * s->route.tolerance_mm);
-    window_locate(&s->window, &s->route);
+    takt_relax_window(&scratch->relax, &s->window, &s->route, AIM * s->route.tolerance_mm);
+    takt_window_locate(&s->window, &s->route);
 }
 
-/* With all known of a longer route in the window, one of so many pieces is kept: the others slow down to its end. */
+/* With all known of a longer route in the window, one of this many pieces is kept: the others slow down to its end. */
 #define BLIND_PART 2
 
 /* Pieces before one that leaves the tolerance that are tried again with it: what they begin with binds it. */
@@ -284,18 +284,18 @@ static unsigned wanted(const struct smooth *s)
     return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
-static void judged(struct smooth *s, struct judge_verdict *v)
+static void verified(struct smooth *s, struct verifier_verdict *v)
 {
-    judge_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
+    takt_verifier_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
 
-/* Do so many pieces come to the end of the chain? */
+/* Do this many pieces come to the end of the chain? */
 static bool is_end(const struct smooth *s, unsigned pieces)
 {
     return s->finished && s->window.at_end && pieces == s->window.count - 3;
 }
 
-/* Pieces to keep when so many from the first on are good. */
+/* Pieces to keep when this many from the first on are good. */
 static unsigned kept(const struct smooth *s, unsigned good)
 {
     const struct window *w = &s->window;
@@ -321,18 +321,18 @@ static void fall_back(struct smooth *s)
     s->ready = s->head.proved;
     s->proved = 0;
     s->stops = true;
-    head_take(&s->head, &s->window, &s->route);
+    takt_head_take(&s->head, &s->window, &s->route);
 }
 
 /* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
-static void time_last(struct smooth *s, union smooth_scratch *scratch, struct judge_verdict *v)
+static void time_last(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
-    struct judge_verdict again;
+    struct verifier_verdict again;
 
-    timing_again(&scratch->timing, &s->window, &s->route);
-    window_extend(&s->window, &s->route);
-    window_locate(&s->window, &s->route);
-    judged(s, &again);
+    takt_timing_again(&scratch->timing, &s->window, &s->route);
+    takt_window_extend(&s->window, &s->route);
+    takt_window_locate(&s->window, &s->route);
+    verified(s, &again);
     if (again.good >= wanted(s)) {
         *v = again;
         return;
@@ -345,33 +345,33 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ju
  * them. Where that brings it no nearer the curve would only come there later and later. A corner that was left out is
  * noticed some way behind it: it is slow where all was whole.
  */
-static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct judge_verdict *v)
+static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     float before_mm = SINGLE_INFINITY;
 
-    judged(s, v);
+    verified(s, v);
     for (unsigned i = 0; i < ATTEMPTS && v->good < wanted(s); i++) {
         if (v->beyond_mm > NEARER * before_mm) {
             break;
         }
         before_mm = v->beyond_mm > 0.0f ? v->beyond_mm : SINGLE_INFINITY;
-        timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
-        window_extend(&s->window, &s->route);
+        takt_timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
+        takt_window_extend(&s->window, &s->route);
         relax_and_locate(s, scratch);
-        judged(s, v);
+        verified(s, v);
     }
 }
 
 /* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
-static void follow_ready(struct smooth *s, const struct judge_verdict *v)
+static void follow_ready(struct smooth *s, const struct verifier_verdict *v)
 {
     if (s->ready == v->followed && !s->stops) {
         s->order = v->order;
     } else {
-        judge_order(&s->window, &s->route, s->ready, &s->order);
+        takt_verifier_order(&s->window, &s->route, s->ready, &s->order);
     }
     if (s->order.count == 0) {
-        order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
+        takt_order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
     }
 }
 
@@ -405,14 +405,14 @@ static void choose(struct smooth *s)
                                      .change = &s->change,
                                      .pieces = s->ready + s->proved,
                                      .kept = s->ready,
-                                     .standing_s = (float)smooth_standing_s(s),
+                                     .standing_s = (float)takt_smooth_standing_s(s),
                                      .starts = rests,
                                      .finished = s->finished};
-    const bool slower = worth_path(&now, &s->since);
+    const bool slower = takt_worth_path(&now, &s->since);
     double to_mm;
 
     if (rests) {
-        if (worth_path_from_rest(&now, &to_mm) || slower || is_stuck(s)) {
+        if (takt_worth_path_from_rest(&now, &to_mm) || slower || is_stuck(s)) {
             take_path(s, to_mm);
         }
     } else if (is_stuck(s) || slower || needs_other_interval(s)) {
@@ -422,12 +422,12 @@ static void choose(struct smooth *s)
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
 static void find_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
-                     struct judge_verdict *v)
+                     struct verifier_verdict *v)
 {
     for (unsigned i = 0; i < rounds; i++) {
         relax_and_locate(s, scratch);
-        timing_again(&scratch->timing, &s->window, &s->route);
-        window_extend(&s->window, &s->route);
+        takt_timing_again(&scratch->timing, &s->window, &s->route);
+        takt_window_extend(&s->window, &s->route);
     }
     relax_and_locate(s, scratch);
     slow_down(s, scratch, v);
@@ -443,13 +443,13 @@ static void find_way(struct smooth *s, union smooth_scratch *scratch, unsigned r
 static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 {
     const bool goes_on = s->head.proved > 0;
-    struct judge_verdict v;
+    struct verifier_verdict v;
 
     find_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, &v);
     if (goes_on && is_stuck(s)) {
         s->window.count = SMOOTH_FIXED;
         s->window.at_end = false;
-        window_extend(&s->window, &s->route);
+        takt_window_extend(&s->window, &s->route);
         find_way(s, scratch, ROUNDS_FIRST, &v);
     }
     choose(s);
@@ -461,23 +461,23 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
 static void drop_taken(struct smooth *s)
 {
-    window_drop(&s->window, &s->route, s->taken);
+    takt_window_drop(&s->window, &s->route, s->taken);
     s->taken = 0;
     s->ready = 0;
     if (s->stops) {
-        window_rest(&s->window, &s->route, &s->order);
+        takt_window_rest(&s->window, &s->route, &s->order);
         s->stops = false;
         begin_anew(s);
     }
     if (s->window.count > 0) {
-        route_forget(&s->route, s->window.at_mm[0]);
+        takt_route_forget(&s->route, s->window.at_mm[0]);
     }
 }
 
 /* The window for the next pieces; false when more must be known first. */
 static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 {
-    head_keep(&s->head, &s->window, &s->route, s->proved);
+    takt_head_keep(&s->head, &s->window, &s->route, s->proved);
     if (!fill(s)) {
         return false;
     }
@@ -492,20 +492,20 @@ static void end_element(struct smooth *s)
     const uint32_t next = w->element[0] + 1;
 
     if (next == s->route.count) {
-        smooth_reset(s);
+        takt_smooth_reset(s);
         return;
     }
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
         w->element[i] = next;
     }
-    if (w->at_mm[0] < s->exact_mm || !exact_rests(&s->route, &s->limits, next)) {
+    if (w->at_mm[0] < s->exact_mm || !takt_exact_rests(&s->route, &s->limits, next)) {
         return;
     }
     s->exact = false;
     s->tried_mm = w->at_mm[0];
     s->tried = next;
     s->since = (struct worth_since){.element = next};
-    order_start(&s->order, w->at_mm[0], next);
+    takt_order_start(&s->order, w->at_mm[0], next);
     begin_anew(s);
 }
 
@@ -516,8 +516,8 @@ static void end_element(struct smooth *s)
 static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct curve *curve)
 {
     const uint32_t element = s->window.element[0];
-    const uint32_t told = smooth_tell(s, element);
-    const bool goes = exact_next(&s->window, &s->route, &s->limits, &s->move, curve);
+    const uint32_t told = takt_smooth_tell(s, element);
+    const bool goes = takt_exact_next(&s->window, &s->route, &s->limits, &s->move, curve);
     const bool ends = s->window.at_mm[0] >= route_end_of(&s->route, element);
 
     s->move.line = route_element(&s->route, told)->line;
@@ -534,16 +534,16 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
 
 static void take_piece(struct smooth *s, struct smooth_piece *piece)
 {
-    smooth_set_piece(s, piece);
+    takt_smooth_set_piece(s, piece);
     if (s->starts) {
         s->starts = false;
-        smooth_stand(s, piece, &piece->control[0], true);
-        smooth_take_standing(s, piece);
+        takt_smooth_stand(s, piece, &piece->control[0], true);
+        takt_smooth_take_standing(s, piece);
         return;
     }
     s->taken++;
     if (piece->last) {
-        smooth_stand(s, piece, &piece->control[3], false);
+        takt_smooth_stand(s, piece, &piece->control[3], false);
         piece->last = false;
     }
 }
@@ -554,12 +554,12 @@ static bool is_element_known(const struct smooth *s)
     return s->finished || s->window.element[0] + 1 < s->route.count;
 }
 
-enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
-                              struct smooth_piece *piece, struct curve *curve)
+enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scratch,
+                                   struct smooth_piece *piece, struct curve *curve)
 {
     while (s->open) {
         if (s->standing > 0) {
-            smooth_take_standing(s, piece);
+            takt_smooth_take_standing(s, piece);
             return SMOOTH_PIECE;
         }
         if (s->taken < s->ready) {

@@ -9,11 +9,11 @@
 #define TAKT_SMOOTH_SMOOTH_H
 
 #include "smooth/head.h"
-#include "smooth/judge.h"
 #include "smooth/merge.h"
 #include "smooth/relax.h"
 #include "smooth/route.h"
 #include "smooth/timing.h"
+#include "smooth/verifier.h"
 #include "smooth/window.h"
 #include "smooth/worth.h"
 
@@ -68,7 +68,7 @@ struct smooth {
     struct window window;
     struct smooth_head head;
     struct merge merge; /* the newest line, not on the route yet */
-    struct judge_change change;
+    struct verifier_change change;
     struct order
         order; /* where the pieces that are ready end; before there are any, where the window begins */
     struct move move; /* of the piece taken last, */
@@ -95,28 +95,28 @@ struct smooth {
     unsigned taken;        /* of them */
 };
 
-void smooth_init(struct smooth *s, const struct smooth_limits *limits);
+void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits);
 /* May this motion be part of a smooth chain? */
-bool smooth_takes(const struct move *move, const struct curve *curve);
+bool takt_smooth_takes(const struct move *move, const struct curve *curve);
 /* May it join the chain that is open? True when none is. */
-bool smooth_joins(const struct smooth *s, const struct move *move);
-bool smooth_has_room(const struct smooth *s);
-/* Appends a motion. Needs room and smooth_joins(). */
-void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
-                 const struct curve *curve);
+bool takt_smooth_joins(const struct smooth *s, const struct move *move);
+bool takt_smooth_has_room(const struct smooth *s);
+/* Appends a motion. Needs room and takt_smooth_joins(). */
+void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number,
+                      const struct curve *curve);
 /*
  * Is all of the chain so far one programmed line? If nothing follows there is nothing to smooth: no curve is shorter, and what
  * plans lines from rest to rest is quicker. It may be forgotten then.
  */
-bool smooth_is_line(const struct smooth *s);
+bool takt_smooth_is_line(const struct smooth *s);
 /* Nothing follows in this chain: it ends at rest. */
-void smooth_finish(struct smooth *s);
+void takt_smooth_finish(struct smooth *s);
 /*
  * The next piece, or the next motion: that is a curve, its end the one of piece->move. scratch: no matter what is in it.
  */
-enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
-                              struct smooth_piece *piece, struct curve *curve);
+enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scratch,
+                                   struct smooth_piece *piece, struct curve *curve);
 /* Forgets everything. */
-void smooth_reset(struct smooth *s);
+void takt_smooth_reset(struct smooth *s);
 
 #endif

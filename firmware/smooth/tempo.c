@@ -5,7 +5,7 @@
  *     x' b'/2 + x'' b                        within A d^2
  *     r (x' b''/2 + 3/2 x'' b' + x''' b)     within J d^3
  *
- * less what a change of rate needs there (judge.h), at both ends of each piece: rows of the three coefficients of b
+ * less what a change of rate needs there (verifier.h), at both ends of each piece: rows of the three coefficients of b
  * (Verscheure et al. 2009 have the first row; the second is theirs differentiated once more). Least time, the sum of
  * 1/sqrt(b), is found by a barrier method (Boyd and Vandenberghe 2004, 11.3): Newton's steps on
  * sum 1/sqrt(b) - mu sum log(slack)  while mu falls. What is exceeded to begin with may stay so far off but no farther, and is
@@ -13,8 +13,8 @@
  */
 #include "smooth/tempo.h"
 
-#include "smooth/judge.h"
 #include "smooth/single.h"
+#include "smooth/verifier.h"
 
 #include <string.h>
 
@@ -25,12 +25,12 @@
 #define BARRIER_LESS 0.4f
 #define STEP_FAR     0.3f
 
-/* Of the way to the first limit in its direction so much is gone. */
+/* Part of the way to the first limit in its direction that a step goes. */
 #define STEP_PART 0.95f
 
 /* Rates between 0.15 and 1.5: what is farther off is left to the next window. */
-#define ENERGY_MIN  0.0225f
-#define ENERGY_MOST 2.25f
+#define RATE_SQUARED_MIN  0.0225f
+#define RATE_SQUARED_MOST 2.25f
 
 /* The barrier's weight where a limit is exceeded, at least. */
 #define DRAWN 0.03f
@@ -50,7 +50,7 @@ struct row {
     lanes by[3];
 };
 
-/* Changes of rate leave this part of what an axis may at least: judge.c has bounds of its own. */
+/* Changes of rate leave this part of what an axis may at least: verifier.c has bounds of its own. */
 #define LEFT_LEAST 0.5f
 
 /* What a change of rate leaves, or a little more than what is near it or beyond. */
@@ -67,16 +67,16 @@ static inline lanes left_by(lanes part, lanes of)
 
 /* b, its slope and the rate at an end of pieces, and what the rate grows by for a coefficient. */
 struct end {
-    lanes energy, slope, rate, faster;
+    lanes rate_squared, slope, rate, faster;
 };
 
-static struct end end_of(const float *energy)
+static struct end end_of(const float *rate_squared)
 {
-    const lanes before = lanes_at(energy);
-    const lanes after = lanes_at(energy + 1);
+    const lanes before = lanes_at(rate_squared);
+    const lanes after = lanes_at(rate_squared + 1);
     const lanes middle = 0.5f * (before + after);
 
-    /* d rate / d energy = 1/2 / rate: half of that for each of the two coefficients */
+    /* d rate / d squared rate = 1/2 / rate: half of that for each of the two coefficients */
     return (struct end){middle, after - before, lanes_sqrt(middle), 0.25f / middle};
 }
 
@@ -94,7 +94,7 @@ static inline struct motion_at motion_at(const struct tempo *p, unsigned slot, u
     struct motion_at m = {.first = lanes_at(p->first + at), .second = lanes_at(p->second + at)};
 
     m.half = 0.5f * m.first;
-    m.bend = e->slope * m.half + e->energy * m.second;
+    m.bend = e->slope * m.half + e->rate_squared * m.second;
     m.jerk = e->rate * per_unit;
     const lanes needed =
         p->rounded * lanes_size(e->rate * m.first) + 3.0f * p->change * lanes_size(m.bend);
@@ -120,7 +120,7 @@ static inline void rows_of(const struct tempo *p, unsigned slot, unsigned piece,
 
     row[1].most = m0.jerk_most;
     row[1].value =
-        m0.jerk * (bow * m0.first + 1.5f * end[0].slope * m0.second + end[0].energy * third);
+        m0.jerk * (bow * m0.first + 1.5f * end[0].slope * m0.second + end[0].rate_squared * third);
     const lanes faster0 = row[1].value * end[0].faster;
     row[1].by[0] = m0.jerk * (m0.half - 1.5f * m0.second + 0.5f * third) + faster0;
     row[1].by[1] = m0.jerk * (1.5f * m0.second - m0.first + 0.5f * third) + faster0;
@@ -128,14 +128,17 @@ static inline void rows_of(const struct tempo *p, unsigned slot, unsigned piece,
 
     row[2].most = m1.jerk_most;
     row[2].value =
-        m1.jerk * (bow * m1.first + 1.5f * end[1].slope * m1.second + end[1].energy * third);
+        m1.jerk * (bow * m1.first + 1.5f * end[1].slope * m1.second + end[1].rate_squared * third);
     const lanes faster1 = row[2].value * end[1].faster;
     row[2].by[0] = m1.jerk * m1.half;
     row[2].by[1] = m1.jerk * (0.5f * third - m1.first - 1.5f * m1.second) + faster1;
     row[2].by[2] = m1.jerk * (m1.half + 1.5f * m1.second + 0.5f * third) + faster1;
 }
 
-/* Of pieces' rows: for each of their three coefficients the gradient, and its products with itself and with those behind. */
+/*
+ * Sums over pieces' rows: for each of their three coefficients the gradient, and its products with itself and with
+ * those behind.
+ */
 struct sums {
     lanes of[TEMPO_SUMS];
 };
@@ -168,7 +171,7 @@ static inline void add_row(struct sums *s, const struct row *row, float weight)
     }
 }
 
-/* Of the slots that lie in a lane. */
+/* Sums over the slots that lie in a lane. */
 static inline void sum_lane(const struct tempo *p, const struct route *r, unsigned lane,
                             unsigned piece, const struct end end[2], float weight, struct sums *s)
 {
@@ -185,10 +188,11 @@ static inline void sum_lane(const struct tempo *p, const struct route *r, unsign
     }
 }
 
-/* Of the pieces from one on, as many as there are lanes, all slots: in the order of lanes_sum(). */
+/* Sums of the pieces from one on, as many as there are lanes, over all slots: in the order of lanes_sum(). */
 static void sum_pieces(struct tempo *p, const struct route *r, unsigned piece, float weight)
 {
-    const struct end end[2] = {end_of(p->energy + piece), end_of(p->energy + piece + 1)};
+    const struct end end[2] = {end_of(p->rate_squared + piece),
+                               end_of(p->rate_squared + piece + 1)};
     struct sums s[SMOOTH_LANES];
 
     for (unsigned lane = 0; lane < SMOOTH_LANES; lane++) {
@@ -201,7 +205,7 @@ static void sum_pieces(struct tempo *p, const struct route *r, unsigned piece, f
     }
 }
 
-/* Before the first piece (tempo_find) and behind the last one there is none. */
+/* Before the first piece (takt_tempo_find) and behind the last one there is none. */
 static void sum_all(struct tempo *p, const struct route *r, float weight)
 {
     for (unsigned i = 0; i < p->pieces; i += SMOOTH_LANES) {
@@ -212,13 +216,14 @@ static void sum_all(struct tempo *p, const struct route *r, float weight)
     }
 }
 
-/* The highest energy that coefficients may have now. */
+/* The highest squared rate that coefficients may have now. */
 static inline lanes most_of(const struct tempo *p, unsigned i)
 {
-    const lanes energy = lanes_at(p->energy + i);
+    const lanes rate_squared = lanes_at(p->rate_squared + i);
     const lanes most = lanes_at(p->most + i);
 
-    return lanes_max(most, lanes_choose(energy > NEAR * most, FARTHER * energy, lanes_all(0.0f)));
+    return lanes_max(
+        most, lanes_choose(rate_squared > NEAR * most, FARTHER * rate_squared, lanes_all(0.0f)));
 }
 
 /* One of the sums of coefficient i where that is the first one of its piece, the second, or the third. */
@@ -227,11 +232,11 @@ static inline lanes sum_at(const struct tempo *p, unsigned as, unsigned n, unsig
     return lanes_at(&p->sum[sums_of[as] + n][i + 2 - as]);
 }
 
-/* Of the three pieces that each coefficient belongs to; and of itself: d/db of -1/sqrt(b) and of its bounds. */
+/* Adds up the three pieces that each coefficient belongs to, and its own part: d/db of -1/sqrt(b) and of its bounds. */
 static void set_coefficients(struct tempo *p, unsigned i, float weight)
 {
-    const lanes b = lanes_at(p->energy + i);
-    const lanes below = 1.0f / (b - ENERGY_MIN);
+    const lanes b = lanes_at(p->rate_squared + i);
+    const lanes below = 1.0f / (b - RATE_SQUARED_MIN);
     const lanes above = 1.0f / (most_of(p, i) - b);
     const lanes gain = 0.5f / (b * lanes_sqrt(b));
     const lanes pull = gain + weight * (below - above);
@@ -307,7 +312,7 @@ static void solve(struct tempo *p)
     }
 }
 
-/* Of what is left from i on. */
+/* Lanes that what is left from i on takes. */
 static unsigned lanes_used(unsigned count, unsigned i)
 {
     return count - i < SMOOTH_LANES ? count - i : SMOOTH_LANES;
@@ -316,7 +321,8 @@ static unsigned lanes_used(unsigned count, unsigned i)
 /* How far the rows of pieces come with the step. True: farther than a part of it, in some lane. */
 static bool approach_limits(struct tempo *p, const struct route *r, unsigned piece, float t)
 {
-    const struct end end[2] = {end_of(p->energy + piece), end_of(p->energy + piece + 1)};
+    const struct end end[2] = {end_of(p->rate_squared + piece),
+                               end_of(p->rate_squared + piece + 1)};
     const float *step = p->step + piece;
     lanes_int beyond = {0};
 
@@ -360,9 +366,9 @@ static float part_of_piece(const struct tempo *p, const struct route *r, unsigne
 static float part_of_coefficients(const struct tempo *p, unsigned i, unsigned used, float t)
 {
     const lanes change = lanes_at(p->step + i);
-    const lanes energy = lanes_at(p->energy + i);
+    const lanes rate_squared = lanes_at(p->rate_squared + i);
     const struct tempo_approach a = {
-        lanes_choose(change > 0.0f, most_of(p, i) - energy, energy - ENERGY_MIN),
+        lanes_choose(change > 0.0f, most_of(p, i) - rate_squared, rate_squared - RATE_SQUARED_MIN),
         lanes_size(change)};
 
     if (lanes_any(a.room < t * a.size)) {
@@ -398,14 +404,14 @@ static float part_of_step(struct tempo *p, const struct route *r)
 static void set_most(struct tempo *p, const struct window *w, const struct route *r)
 {
     for (unsigned i = 0; i < p->pieces + 2; i++) {
-        p->most[i] = ENERGY_MOST;
+        p->most[i] = RATE_SQUARED_MOST;
     }
     for (unsigned i = 0; i < p->pieces; i++) {
-        struct judge_need need;
+        struct verifier_need need;
 
-        judge_need(w, r, i, &need);
-        float feed =
-            single_min(single_sqrt(ENERGY_MOST), judge_programmed(&need, r, w->element[i + 1]));
+        takt_verifier_need(w, r, i, &need);
+        float feed = single_min(single_sqrt(RATE_SQUARED_MOST),
+                                takt_verifier_programmed(&need, r, w->element[i + 1]));
 
         for (unsigned k = 0; k < r->slots.count; k++) {
             if (feed * need.first[k] > r->slots.velocity_mm_s[k]) {
@@ -417,7 +423,7 @@ static void set_most(struct tempo *p, const struct window *w, const struct route
         }
     }
     for (unsigned i = 0; i < p->pieces + 2; i++) {
-        p->most[i] = single_max(p->most[i], 2.0f * ENERGY_MIN);
+        p->most[i] = single_max(p->most[i], 2.0f * RATE_SQUARED_MIN);
     }
 }
 
@@ -458,11 +464,11 @@ static void set_even(struct tempo *p, const struct window *w)
 {
     p->pieces = w->count - SMOOTH_FIXED;
     for (unsigned i = 0; i < TEMPO_MAX; i++) {
-        p->energy[i] = 1.0f;
+        p->rate_squared[i] = 1.0f;
     }
 }
 
-void tempo_find(struct tempo *p, const struct window *w, const struct route *r)
+void takt_tempo_find(struct tempo *p, const struct window *w, const struct route *r)
 {
     float weight = BARRIER;
 
@@ -479,29 +485,29 @@ void tempo_find(struct tempo *p, const struct window *w, const struct route *r)
         const float t = part_of_step(p, r);
 
         for (unsigned i = 0; i < p->pieces + 2; i++) {
-            p->energy[i] += t * p->step[i];
+            p->rate_squared[i] += t * p->step[i];
         }
         weight *= t > STEP_FAR ? BARRIER_LESS : 1.0f;
     }
 }
 
-void tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
-                float rate)
+void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
+                     float rate)
 {
     set_even(p, w);
     for (unsigned i = 2; i < p->pieces + 2; i++) {
         if (i + around > piece + 1 && i < piece + 1 + around) {
-            p->energy[i] = rate * rate;
+            p->rate_squared[i] = rate * rate;
         }
     }
 }
 
-float tempo_energy(const struct tempo *p, float u, float *slope)
+float takt_tempo_rate_squared(const struct tempo *p, float u, float *slope)
 {
     const float place = single_clamp(u - 1.0f, 0.0f, (float)p->pieces);
     const unsigned i = place < (float)p->pieces ? (unsigned)place : p->pieces - 1;
     const float f = place - (float)i;
-    const float *e = p->energy + i;
+    const float *e = p->rate_squared + i;
     const float slope0 = e[1] - e[0];
     const float slope1 = e[2] - e[1];
 

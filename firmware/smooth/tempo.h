@@ -2,7 +2,7 @@
  * How fast nominal time should pass along a window's curve as it is, so that it takes the least of it: b = r^2, the square of
  * the rate, a quadratic B-spline with its knots at the samples.
  *
- *     b(u) = sum of weight_k(f) energy[i + k], k = 0..2, for u = i + 1 + f: piece i of the window
+ *     b(u) = sum of weight_k(f) squared rate[i + k], k = 0..2, for u = i + 1 + f: piece i of the window
  */
 #ifndef TAKT_SMOOTH_TEMPO_H
 #define TAKT_SMOOTH_TEMPO_H
@@ -26,15 +26,15 @@ struct tempo_approach {
     lanes room, size;
 };
 
-/* Working memory; holds nothing between calls but energy. Lanes are pieces that follow each other. */
+/* Working memory; holds nothing between calls but squared rate. Lanes are pieces that follow each other. */
 struct tempo {
     unsigned pieces;
     unsigned capacity; /* samples of a slot */
-    float energy[TEMPO_MAX];
+    float rate_squared[TEMPO_MAX];
     float most[TEMPO_MAX];    /* of it: velocity, programmed feed */
     float step[TEMPO_MAX];    /* of one iteration */
     float band[3][TEMPO_MAX]; /* its matrix: the diagonal, and what is beside it */
-    float change;             /* of the rate, in an interval (judge.h) */
+    float change;             /* of the rate, in an interval (verifier.h) */
     float rounded;
     float bend_per_unit[SMOOTH_SLOTS_MAX]; /* differences in A and J */
     float twist_per_unit[SMOOTH_SLOTS_MAX];
@@ -46,11 +46,11 @@ struct tempo {
 };
 
 /* The best that is found. It begins as the window does, at rate 1; unless the path ends there, it ends so too. */
-void tempo_find(struct tempo *p, const struct window *w, const struct route *r);
-/* The same rate everywhere, but for so many pieces to both sides of one. */
-void tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
-                float rate);
+void takt_tempo_find(struct tempo *p, const struct window *w, const struct route *r);
+/* The same rate everywhere, but for this many pieces on both sides of one. */
+void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
+                     float rate);
 /* b at u samples from the first one, and its derivative. */
-float tempo_energy(const struct tempo *p, float u, float *slope);
+float takt_tempo_rate_squared(const struct tempo *p, float u, float *slope);
 
 #endif

@@ -10,7 +10,7 @@
 struct spot {
     unsigned piece;
     float fraction;
-    float energy;
+    float rate_squared;
     float slope; /* b' */
 };
 
@@ -18,7 +18,7 @@ static float rate_at(const struct tempo *p, float u)
 {
     float slope;
 
-    return single_sqrt(tempo_energy(p, u, &slope));
+    return single_sqrt(takt_tempo_rate_squared(p, u, &slope));
 }
 
 /* One interval on, u' = r(u), by Runge and Kutta's rule of fourth order. */
@@ -38,7 +38,7 @@ static struct spot spot_at(const struct timing *t, float u)
     const unsigned piece = u - 1.0f < (float)last ? (unsigned)(u - 1.0f) : last;
     struct spot s = {.piece = piece, .fraction = single_min(1.0f, u - 1.0f - (float)piece)};
 
-    s.energy = tempo_energy(&t->tempo, u, &s.slope);
+    s.rate_squared = takt_tempo_rate_squared(&t->tempo, u, &s.slope);
     return s;
 }
 
@@ -57,7 +57,7 @@ static void stand_off(const struct window *from, unsigned group, const struct sp
     const lanes second = step1 - step0 + s->fraction * third;
     const lanes first =
         0.5f * (step0 + step1) + s->fraction * (step1 - step0 + (0.5f * s->fraction) * third);
-    const lanes off = (second * s->energy + first * (0.5f * s->slope)) * (1.0f / 6.0f);
+    const lanes off = (second * s->rate_squared + first * (0.5f * s->slope)) * (1.0f / 6.0f);
 
     for (unsigned k = 0; k < SMOOTH_LANES; k++) {
         spot->group[group][k] -= single_round(off[k]);
@@ -71,13 +71,13 @@ static void append(const struct timing *t, struct window *w, const struct route 
     struct window_spot spot;
     float weight[4];
 
-    window_weights(s.fraction, weight);
-    window_spot(from, r, s.piece, weight, &spot);
+    takt_window_weights(s.fraction, weight);
+    takt_window_spot(from, r, s.piece, weight, &spot);
     for (unsigned g = 0; g < r->slots.groups; g++) {
         stand_off(from, g, &s, &spot);
     }
-    window_set(w, r, w->count, &spot);
-    w->at_mm[w->count] = window_at(from, s.piece, weight);
+    takt_window_set(w, r, w->count, &spot);
+    w->at_mm[w->count] = takt_window_at(from, s.piece, weight);
     w->element[w->count] = from->element[s.piece + 1];
     w->count++;
 }
@@ -91,7 +91,7 @@ static void append_end(struct window *w, const struct window *from, const struct
         spot.group[g] = from->x[g * from->capacity + last];
     }
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        window_set(w, r, w->count, &spot);
+        takt_window_set(w, r, w->count, &spot);
         w->at_mm[w->count] = from->at_mm[last];
         w->element[w->count] = from->element[last];
         w->count++;
@@ -120,14 +120,14 @@ static void resample(struct timing *t, struct window *w, const struct route *r)
     }
 }
 
-void timing_again(struct timing *t, struct window *w, const struct route *r)
+void takt_timing_again(struct timing *t, struct window *w, const struct route *r)
 {
-    tempo_find(&t->tempo, w, r);
+    takt_tempo_find(&t->tempo, w, r);
     resample(t, w, r);
 }
 
-void timing_slow(struct timing *t, struct window *w, const struct route *r, unsigned piece)
+void takt_timing_slow(struct timing *t, struct window *w, const struct route *r, unsigned piece)
 {
-    tempo_slow(&t->tempo, w, piece, SLOWER_AROUND, SLOWER);
+    takt_tempo_slow(&t->tempo, w, piece, SLOWER_AROUND, SLOWER);
     resample(t, w, r);
 }

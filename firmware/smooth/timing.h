@@ -14,8 +14,8 @@ struct timing {
 };
 
 /* w again with its samples at other times, the same curve but for little. Fixed samples stay. */
-void timing_again(struct timing *t, struct window *w, const struct route *r);
+void takt_timing_again(struct timing *t, struct window *w, const struct route *r);
 /* Everything about a piece, and before it, takes longer: nothing else helped. */
-void timing_slow(struct timing *t, struct window *w, const struct route *r, unsigned piece);
+void takt_timing_slow(struct timing *t, struct window *w, const struct route *r, unsigned piece);
 
 #endif

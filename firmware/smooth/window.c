@@ -17,17 +17,17 @@
 /* A corner that turns by more than this must be passed by the curve before its samples are beyond it. */
 #define SHARP 0.2f
 
-/* So many tolerances from a corner is near it: the chord of two samples cannot tell more. */
+/* Up to this many tolerances from a corner is near it: the chord of two samples cannot tell more. */
 #define NEAR_CORNER 3.0f
 
-/* A window as long as the fastest feed makes it takes so many units; coordinates may be a few times that. */
+/* A window as long as the fastest feed makes it takes this many units; coordinates may be a few times that. */
 #define UNITS 268435456.0
 
 /* Coordinates are never farther from the origin. */
 #define UNITS_MAX 1073741824.0
 
 /* b0 = (1-f)^3/6, b1 = (4 - 6f^2 + 3f^3)/6, b2 = (1 + 3f + 3f^2 - 3f^3)/6, b3 = f^3/6 (uniform cubic B-spline). */
-void window_weights(float f, float weight[4])
+void takt_window_weights(float f, float weight[4])
 {
     const float g = 1.0f - f;
 
@@ -51,7 +51,7 @@ static double unit_for(double length_mm)
     return unit;
 }
 
-void window_init(struct window *w, const struct route *r, double interval_s)
+void takt_window_init(struct window *w, const struct route *r, double interval_s)
 {
     w->count = 0;
     w->at_end = false;
@@ -67,8 +67,8 @@ void window_init(struct window *w, const struct route *r, double interval_s)
     }
 }
 
-void window_nearest(const struct window *w, const struct route *r, const double p[],
-                    struct window_spot *s)
+void takt_window_nearest(const struct window *w, const struct route *r, const double p[],
+                         struct window_spot *s)
 {
     memset(s, 0, sizeof(*s));
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -78,23 +78,24 @@ void window_nearest(const struct window *w, const struct route *r, const double 
     }
 }
 
-void window_place(const struct window *w, const struct route *r, const struct window_spot *s,
-                  double p[])
+void takt_window_place(const struct window *w, const struct route *r, const struct window_spot *s,
+                       double p[])
 {
     for (unsigned i = 0; i < r->slots.count; i++) {
         p[i] = w->origin[i] + w->unit_mm[i] * (double)s->at[i];
     }
 }
 
-void window_set(struct window *w, const struct route *r, unsigned i, const struct window_spot *s)
+void takt_window_set(struct window *w, const struct route *r, unsigned i,
+                     const struct window_spot *s)
 {
     for (unsigned g = 0; g < r->slots.groups; g++) {
         w->x[g * w->capacity + i] = s->group[g];
     }
 }
 
-bool window_is_at(const struct window *w, const struct route *r, unsigned i,
-                  const struct window_spot *s)
+bool takt_window_is_at(const struct window *w, const struct route *r, unsigned i,
+                       const struct window_spot *s)
 {
     for (unsigned k = 0; k < r->slots.count; k++) {
         const int32_t off = s->at[k] - window_x(w, k, i);
@@ -106,7 +107,7 @@ bool window_is_at(const struct window *w, const struct route *r, unsigned i,
     return true;
 }
 
-void window_sample(const struct window *w, const struct route *r, unsigned i, double p[])
+void takt_window_sample(const struct window *w, const struct route *r, unsigned i, double p[])
 {
     for (unsigned k = 0; k < r->slots.count; k++) {
         p[k] = w->origin[k] + w->unit_mm[k] * (double)window_x(w, k, i);
@@ -121,14 +122,14 @@ static void append(struct window *w, const struct route *r, double at_mm)
 
     w->at_mm[i] = at_mm;
     w->element[i] = i == 0 ? r->first : w->element[i - 1];
-    route_point(r, at_mm, &w->element[i], p);
-    window_nearest(w, r, p, &spot);
-    window_set(w, r, i, &spot);
+    takt_route_point(r, at_mm, &w->element[i], p);
+    takt_window_nearest(w, r, p, &spot);
+    takt_window_set(w, r, i, &spot);
     w->count++;
 }
 
-void window_stand(struct window *w, const struct route *r, const double p[], double at_mm,
-                  uint32_t element)
+void takt_window_stand(struct window *w, const struct route *r, const double p[], double at_mm,
+                       uint32_t element)
 {
     static const struct window_spot nowhere;
 
@@ -138,13 +139,13 @@ void window_stand(struct window *w, const struct route *r, const double p[], dou
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
         w->at_mm[i] = at_mm;
         w->element[i] = element;
-        window_set(w, r, i, &nowhere);
+        takt_window_set(w, r, i, &nowhere);
     }
 }
 
-void window_start(struct window *w, const struct route *r)
+void takt_window_start(struct window *w, const struct route *r)
 {
-    window_stand(w, r, route_start(r, r->first), 0.0, r->first);
+    takt_window_stand(w, r, route_start(r, r->first), 0.0, r->first);
 }
 
 /*
@@ -152,21 +153,21 @@ void window_start(struct window *w, const struct route *r)
  * is one that it can have come to in order, so that it can go to the route there and on along it; at a corner on the element
  * before.
  */
-void window_rest(struct window *w, const struct route *r, const struct order *order)
+void takt_window_rest(struct window *w, const struct route *r, const struct order *order)
 {
     const double on = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
-    const double at = order_place(order, maths_min(on, route_end_of(r, w->element[1])));
-    const uint32_t found = route_find(r, at, w->element[1]);
+    const double at = takt_order_place(order, maths_min(on, route_end_of(r, w->element[1])));
+    const uint32_t found = takt_route_find(r, at, w->element[1]);
     const uint32_t element = found < w->element[1] ? found : w->element[1];
     double p[3][AXIS_COUNT];
 
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        window_sample(w, r, i, p[i]);
+        takt_window_sample(w, r, i, p[i]);
     }
     for (unsigned k = 0; k < r->slots.count; k++) {
         p[1][k] += (p[0][k] - 2.0 * p[1][k] + p[2][k]) / 6.0;
     }
-    window_stand(w, r, p[1], at, element);
+    takt_window_stand(w, r, p[1], at, element);
 }
 
 /* Halvings in search of the next acceleration. */
@@ -193,8 +194,9 @@ static bool can_go(const struct route *r, double here, const struct going *g, fl
     const float feed = g->feed + a * interval;
     const double there = here + (double)(feed * interval);
 
-    return there < route_end(r) && nominal_allows(r, route_find(r, there, g->element), there,
-                                                  feed + 0.5f * a * interval, a);
+    return there < takt_route_end(r) &&
+           takt_nominal_allows(r, takt_route_find(r, there, g->element), there,
+                               feed + 0.5f * a * interval, a);
 }
 
 /* The next place at the nominal feed: no faster than acceleration, jerk and what follows allow. */
@@ -226,9 +228,9 @@ static double next_place(const struct window *w, const struct route *r)
     return at[0] + (double)(single_max(g.feed + changed(&g, along, d, low) * d, least) * d);
 }
 
-void window_extend(struct window *w, const struct route *r)
+void takt_window_extend(struct window *w, const struct route *r)
 {
-    const double end = route_end(r);
+    const double end = takt_route_end(r);
 
     while (!w->at_end && w->count + SMOOTH_FIXED <= w->capacity) {
         const double at = next_place(w, r);
@@ -258,7 +260,7 @@ static void move_origin(struct window *w, const struct route *r)
     }
 }
 
-void window_drop(struct window *w, const struct route *r, unsigned count)
+void takt_window_drop(struct window *w, const struct route *r, unsigned count)
 {
     assert(count <= w->count);
     if (count == 0) {
@@ -285,8 +287,8 @@ static lanes_int nearest(lanes x)
     return lanes_int_of(x + (lanes)(((lanes_int)x & sign) | (lanes_int)half));
 }
 
-void window_spot(const struct window *w, const struct route *r, unsigned i, const float weight[4],
-                 struct window_spot *s)
+void takt_window_spot(const struct window *w, const struct route *r, unsigned i,
+                      const float weight[4], struct window_spot *s)
 {
     memset(s, 0, sizeof(*s));
     for (unsigned g = 0; g < r->slots.groups; g++) {
@@ -298,7 +300,7 @@ void window_spot(const struct window *w, const struct route *r, unsigned i, cons
     }
 }
 
-double window_at(const struct window *w, unsigned i, const float weight[4])
+double takt_window_at(const struct window *w, unsigned i, const float weight[4])
 {
     const double *at = w->at_mm + i;
 
@@ -307,7 +309,7 @@ double window_at(const struct window *w, unsigned i, const float weight[4])
                     weight[3] * (float)(at[3] - at[1]));
 }
 
-void window_reach(const struct window *w, unsigned i, double *from_mm, double *to_mm)
+void takt_window_reach(const struct window *w, unsigned i, double *from_mm, double *to_mm)
 {
     const double reach = maths_max(w->reach_min_mm, REACH * (w->at_mm[i + 1] - w->at_mm[i - 1]));
 
@@ -315,8 +317,8 @@ void window_reach(const struct window *w, unsigned i, double *from_mm, double *t
     *to_mm = w->at_mm[i] + reach;
 }
 
-float window_chord_square(const struct window *w, const struct route *r, uint32_t element,
-                          const struct window_spot *from, const struct window_spot *to)
+float takt_window_chord_square(const struct window *w, const struct route *r, uint32_t element,
+                               const struct window_spot *from, const struct window_spot *to)
 {
     const double *corner = route_start(r, element);
     float chord[AXIS_COUNT];
@@ -349,7 +351,7 @@ static bool passes_near(const struct window *w, const struct route *r, uint32_t 
 {
     const float near_mm = NEAR_CORNER * (float)r->tolerance_mm;
 
-    return window_chord_square(w, r, element, from, to) <= near_mm * near_mm;
+    return takt_window_chord_square(w, r, element, from, to) <= near_mm * near_mm;
 }
 
 /*
@@ -358,38 +360,39 @@ static bool passes_near(const struct window *w, const struct route *r, uint32_t 
  */
 static void stop_at_corner(const struct window *w, const struct route *r, unsigned i,
                            const struct window_spot *before, const struct window_spot *here,
-                           struct route_foot *foot)
+                           struct route_closest *closest)
 {
-    for (uint32_t e = w->element[i - 1] + 1; e <= foot->element; e++) {
+    for (uint32_t e = w->element[i - 1] + 1; e <= closest->element; e++) {
         if (route_turn(r, e) > SHARP && !passes_near(w, r, e, before, here)) {
-            foot->element = e - 1;
-            foot->at_mm = route_element(r, e)->start_mm;
+            closest->element = e - 1;
+            closest->at_mm = route_element(r, e)->start_mm;
             return;
         }
     }
 }
 
-/* Fixed samples have their place already; places never go back, nor do elements at the joint of two. */
-void window_locate(struct window *w, const struct route *r)
+/* Fixed samples have their place already; places never go back, nor do elements at the junction of two. */
+void takt_window_locate(struct window *w, const struct route *r)
 {
     static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
     struct window_spot before;
 
-    window_spot(w, r, SMOOTH_FIXED - 2, at_sample, &before);
+    takt_window_spot(w, r, SMOOTH_FIXED - 2, at_sample, &before);
     for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
-        struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
+        struct route_closest closest = {.element = w->element[i], .at_mm = w->at_mm[i]};
         struct window_spot here;
         double from;
         double to;
         double p[AXIS_COUNT];
 
-        window_reach(w, i, &from, &to);
-        window_spot(w, r, i - 1, at_sample, &here);
-        window_place(w, r, &here, p);
-        route_foot(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]), &foot);
-        stop_at_corner(w, r, i, &before, &here, &foot);
-        w->at_mm[i] = foot.at_mm;
-        w->element[i] = foot.element > w->element[i - 1] ? foot.element : w->element[i - 1];
+        takt_window_reach(w, i, &from, &to);
+        takt_window_spot(w, r, i - 1, at_sample, &here);
+        takt_window_place(w, r, &here, p);
+        takt_route_closest(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]),
+                           &closest);
+        stop_at_corner(w, r, i, &before, &here, &closest);
+        w->at_mm[i] = closest.at_mm;
+        w->element[i] = closest.element > w->element[i - 1] ? closest.element : w->element[i - 1];
         before = here;
     }
 }

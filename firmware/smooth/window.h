@@ -3,7 +3,7 @@
  *
  *     q(u) = sum of b_k(f) x[i + k], k = 0..3, for u = i + 1 + f: the piece i lies between samples i + 1 and i + 2
  *
- * Coordinates are integers: so many units from the window's origin, a unit being a power of two that is small enough for
+ * Coordinates are integers: units from the window's origin, a unit being a power of two that is small enough for
  * differences of every order to be exact. What is handed on is rounded in this way once and for all, so pieces of
  * different windows fit together.
  *
@@ -43,7 +43,7 @@ struct window_spot {
 };
 
 /* Weights of four neighbours at fraction f of a piece. */
-void window_weights(float f, float weight[4]);
+void takt_window_weights(float f, float weight[4]);
 
 /* Samples there is room for. */
 static inline unsigned window_capacity(const struct route *r)
@@ -51,18 +51,18 @@ static inline unsigned window_capacity(const struct route *r)
     return SMOOTH_SAMPLES_MAX / r->slots.groups;
 }
 /* Sets sizes and units for a chain on this route. Empty. */
-void window_init(struct window *w, const struct route *r, double interval_s);
+void takt_window_init(struct window *w, const struct route *r, double interval_s);
 /* Begins at rest at the start of the route. */
-void window_start(struct window *w, const struct route *r);
+void takt_window_start(struct window *w, const struct route *r);
 /* Begins at rest in a point, which is beside a place of the route. */
-void window_stand(struct window *w, const struct route *r, const double p[], double at_mm,
-                  uint32_t element);
+void takt_window_stand(struct window *w, const struct route *r, const double p[], double at_mm,
+                       uint32_t element);
 /* Begins anew at rest where the curve has come to: at the end of its first three samples. */
-void window_rest(struct window *w, const struct route *r, const struct order *order);
+void takt_window_rest(struct window *w, const struct route *r, const struct order *order);
 /* Appends samples at the nominal feed until the window is full or the route's end is in it. */
-void window_extend(struct window *w, const struct route *r);
+void takt_window_extend(struct window *w, const struct route *r);
 /* Drops the oldest samples. */
-void window_drop(struct window *w, const struct route *r, unsigned count);
+void takt_window_drop(struct window *w, const struct route *r, unsigned count);
 
 /* Coordinates of sample i from slot to slot: lane slot % SMOOTH_LANES of group slot / SMOOTH_LANES. */
 static inline int32_t window_x(const struct window *w, unsigned slot, unsigned i)
@@ -70,28 +70,29 @@ static inline int32_t window_x(const struct window *w, unsigned slot, unsigned i
     return w->x[slot / SMOOTH_LANES * w->capacity + i][slot % SMOOTH_LANES];
 }
 
-void window_set(struct window *w, const struct route *r, unsigned i, const struct window_spot *s);
+void takt_window_set(struct window *w, const struct route *r, unsigned i,
+                     const struct window_spot *s);
 /* Is a sample there, but for the rounding of coordinates? */
-bool window_is_at(const struct window *w, const struct route *r, unsigned i,
-                  const struct window_spot *s);
+bool takt_window_is_at(const struct window *w, const struct route *r, unsigned i,
+                       const struct window_spot *s);
 /* A sample in mm. */
-void window_sample(const struct window *w, const struct route *r, unsigned i, double p[]);
+void takt_window_sample(const struct window *w, const struct route *r, unsigned i, double p[]);
 /* The curve at a piece's fraction that has these weights, and where that is on the route. */
-void window_spot(const struct window *w, const struct route *r, unsigned i, const float weight[4],
-                 struct window_spot *s);
-double window_at(const struct window *w, unsigned i, const float weight[4]);
+void takt_window_spot(const struct window *w, const struct route *r, unsigned i,
+                      const float weight[4], struct window_spot *s);
+double takt_window_at(const struct window *w, unsigned i, const float weight[4]);
 /* A spot in mm; a place in mm as the nearest spot. */
-void window_place(const struct window *w, const struct route *r, const struct window_spot *s,
-                  double p[]);
-void window_nearest(const struct window *w, const struct route *r, const double p[],
-                    struct window_spot *s);
+void takt_window_place(const struct window *w, const struct route *r, const struct window_spot *s,
+                       double p[]);
+void takt_window_nearest(const struct window *w, const struct route *r, const double p[],
+                         struct window_spot *s);
 /* Square of the distance of the start of an element from the chord between two spots, weighted. */
-float window_chord_square(const struct window *w, const struct route *r, uint32_t element,
-                          const struct window_spot *from, const struct window_spot *to);
+float takt_window_chord_square(const struct window *w, const struct route *r, uint32_t element,
+                               const struct window_spot *from, const struct window_spot *to);
 /* The curve beside every sample: its place on the route anew. */
-void window_locate(struct window *w, const struct route *r);
+void takt_window_locate(struct window *w, const struct route *r);
 
 /* How far a sample may be from where it was thought to be, along the route. */
-void window_reach(const struct window *w, unsigned i, double *from_mm, double *to_mm);
+void takt_window_reach(const struct window *w, unsigned i, double *from_mm, double *to_mm);
 
 #endif

@@ -3,15 +3,15 @@
 #include "smooth/exact.h"
 #include "smooth/single.h"
 
-/* Of a piece at its rate, s. */
+/* Time of a piece at its rate, s. */
 static float piece_time(const struct worth_window *now, unsigned piece)
 {
     const struct window *w = now->window;
-    struct judge_need need;
-    struct judge_rate rate;
+    struct verifier_need need;
+    struct verifier_rate rate;
 
-    judge_need(w, now->route, piece, &need);
-    judge_rate(&need, now->route, now->route->first + w->paced[piece], now->change, &rate);
+    takt_verifier_need(w, now->route, piece, &need);
+    takt_verifier_rate(&need, now->route, now->route->first + w->paced[piece], now->change, &rate);
     return (float)w->interval_s / single_min(1.0f, single_min(rate.most, rate.programmed));
 }
 
@@ -20,7 +20,7 @@ static uint32_t next_rest(const struct worth_window *now, uint32_t element)
 {
     uint32_t i = element + 1;
 
-    while (i < now->route->count && !exact_rests(now->route, now->machine, i)) {
+    while (i < now->route->count && !takt_exact_rests(now->route, now->machine, i)) {
         i++;
     }
     return i;
@@ -68,7 +68,7 @@ static float go(const struct worth_window *now, struct passed *last)
     return time;
 }
 
-/* Of a stretch at its nominal feed: neither a curve nor the path is quicker. */
+/* Time of a stretch at its nominal feed: neither a curve nor the path is quicker. */
 static float time_between(const struct worth_window *now, uint32_t element, double from_mm,
                           double to_mm)
 {
@@ -108,7 +108,7 @@ static float time_of_rests(const struct worth_window *now)
     return time;
 }
 
-bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
+bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
 {
     const struct window *w = now->window;
     const struct route *r = now->route;
@@ -116,22 +116,22 @@ bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
     struct passed last;
     const float time = go(now, &last);
 
-    *to_mm = route_end(r);
+    *to_mm = takt_route_end(r);
     if (now->finished &&
-        exact_time(r, now->machine, at_mm, w->element[0], r->count) <
+        takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
             time + now->standing_s +
                 time_between(now, w->element[now->pieces + 1], w->at_mm[now->pieces + 1], *to_mm)) {
         return true;
     }
     *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
     if (last.time > 0.0f) {
-        return exact_time(r, now->machine, at_mm, w->element[0], last.element) <
+        return takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) <
                last.time - ramp(now, last.element, last.feed);
     }
     const float gained = now->finished ? time_of_rests(now) - now->standing_s : now->standing_s;
 
     return time_to(now) + gained < time ||
-           exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
+           takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
 }
 
 /* From rest at the start of an element to where the pieces end, of the last element a part. */
@@ -139,16 +139,16 @@ static float path_time(const struct worth_window *now, uint32_t first)
 {
     const struct route *r = now->route;
     const double at_mm = now->window->at_mm[now->pieces + 1];
-    const uint32_t last = route_find(r, at_mm, now->window->element[now->pieces + 1]);
+    const uint32_t last = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
     const double start_mm = route_element(r, last)->start_mm;
     const double part = (at_mm - start_mm) / (route_end_of(r, last) - start_mm);
 
-    return exact_time(r, now->machine, 0.0, first, last) +
-           (float)part * exact_time(r, now->machine, 0.0, last, last + 1);
+    return takt_exact_time(r, now->machine, 0.0, first, last) +
+           (float)part * takt_exact_time(r, now->machine, 0.0, last, last + 1);
 }
 
 /* To change over the curve must first come to rest, and the path get going from there. Where a stretch begins nothing can be told. */
-bool worth_path(const struct worth_window *now, struct worth_since *since)
+bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
     const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
@@ -157,7 +157,7 @@ bool worth_path(const struct worth_window *now, struct worth_since *since)
     struct passed last;
     const float time = go(now, &last);
 
-    while (first > now->route->first && !exact_rests(now->route, now->machine, first)) {
+    while (first > now->route->first && !takt_exact_rests(now->route, now->machine, first)) {
         first--;
     }
     if (first != since->element) {

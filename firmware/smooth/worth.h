@@ -4,15 +4,15 @@
 #ifndef TAKT_SMOOTH_WORTH_H
 #define TAKT_SMOOTH_WORTH_H
 
-#include "smooth/judge.h"
+#include "smooth/verifier.h"
 #include "smooth/window.h"
 
-/* The first so many pieces of a window. */
+/* The first pieces of a window. */
 struct worth_window {
     const struct window *window;
     const struct route *route;
     const struct smooth_limits *machine;
-    const struct judge_change *change;
+    const struct verifier_change *change;
     unsigned pieces;
     unsigned kept;    /* of them: these are handed on */
     float standing_s; /* what a curve takes longer where it begins and ends at rest */
@@ -30,8 +30,8 @@ struct worth_since {
  * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place in the window where it rests?
  * to_mm: that place, or the next one where there is none.
  */
-bool worth_path_from_rest(const struct worth_window *now, double *to_mm);
+bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm);
 /* Is the path so much quicker to where the pieces end, with what has been taken on the first stretch before, that a change is worth it? */
-bool worth_path(const struct worth_window *now, struct worth_since *since);
+bool takt_worth_path(const struct worth_window *now, struct worth_since *since);
 
 #endif

@@ -44,7 +44,7 @@ static double angle_in_quadrant(unsigned quadrant, const int64_t p[2])
 {
     const unsigned g = quadrants[quadrant].grows;
 
-    return maths_atan2((double)evaluate_size(p[g]), (double)evaluate_size(p[1U - g]));
+    return takt_maths_atan2((double)evaluate_size(p[g]), (double)evaluate_size(p[1U - g]));
 }
 
 static int64_t square_of(const int64_t p[2])
@@ -66,7 +66,7 @@ static void go_straight(struct evaluate_arc *arc)
     const int64_t rest[AXIS_COUNT] = {arc->end[0] - arc->at[0], arc->end[1] - arc->at[1]};
 
     arc->straight = true;
-    evaluate_line_begin(&arc->rest, arc->form, rest);
+    takt_evaluate_line_begin(&arc->rest, arc->form, rest);
 }
 
 static void look_for_end(struct evaluate_arc *arc)
@@ -78,7 +78,7 @@ static void look_for_end(struct evaluate_arc *arc)
     }
 }
 
-void evaluate_arc_begin(struct evaluate_arc *arc, const struct evaluate_arc_config *config)
+void takt_evaluate_arc_begin(struct evaluate_arc *arc, const struct evaluate_arc_config *config)
 {
     const unsigned first = config->clockwise ? 0U : 1U;
 
@@ -161,7 +161,7 @@ static unsigned step_straight(struct evaluate_arc *arc, unsigned *backwards)
 {
     struct evaluate_tick tick;
 
-    (void)evaluate_line_next(&arc->rest, &tick);
+    (void)takt_evaluate_line_next(&arc->rest, &tick);
     for (unsigned i = 0; i < 2; i++) {
         if (evaluate_has(tick.axes, i)) {
             arc->at[i] += evaluate_has(tick.direction, i) ? -1 : 1;
@@ -176,7 +176,7 @@ static unsigned exchange_bits(unsigned mask)
     return (mask & 1U) << 1 | mask >> 1;
 }
 
-bool evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick)
+bool takt_evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick)
 {
     unsigned backwards;
     unsigned mask;
@@ -193,7 +193,7 @@ bool evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick)
 }
 
 /* f0 = V max(|I|, |J|) / (h R), plain V (|I| + |J|) / (h R), with I and J of this place, brought onto the circle */
-double evaluate_arc_rate(const struct evaluate_arc *arc)
+double takt_evaluate_arc_rate(const struct evaluate_arc *arc)
 {
     const double a = (double)evaluate_size(arc->at[0]);
     const double b = (double)evaluate_size(arc->at[1]);
@@ -201,7 +201,7 @@ double evaluate_arc_rate(const struct evaluate_arc *arc)
     return (arc->form == EVALUATE_PLAIN ? a + b : maths_max(a, b)) / maths_sqrt(a * a + b * b);
 }
 
-double evaluate_arc_angle(const struct evaluate_arc *arc)
+double takt_evaluate_arc_angle(const struct evaluate_arc *arc)
 {
     return (double)arc->passed * MATHS_HALF_PI + angle_in_quadrant(arc->quadrant, arc->at) -
            arc->start_rad;

@@ -36,18 +36,18 @@ struct evaluate_arc {
     double sweep_rad; /* from start to end, >= 0 */
 };
 
-void evaluate_arc_begin(struct evaluate_arc *arc, const struct evaluate_arc_config *config);
+void takt_evaluate_arc_begin(struct evaluate_arc *arc, const struct evaluate_arc_config *config);
 
 /* The next tick; bit 0 of its masks is the first axis of the plane, bit 1 the second. False: the end is reached. */
-bool evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick);
+bool takt_evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick);
 
 /*
  * Ticks a second for a path speed of one step a second, here and now: improved max(|a|, |b|) / R, plain
  * (|a| + |b|) / R. It follows the angle, so that the path is passed at constant speed.
  */
-double evaluate_arc_rate(const struct evaluate_arc *arc);
+double takt_evaluate_arc_rate(const struct evaluate_arc *arc);
 
 /* Angle of the point from the start, rad, in the sense of turning. */
-double evaluate_arc_angle(const struct evaluate_arc *arc);
+double takt_evaluate_arc_angle(const struct evaluate_arc *arc);
 
 #endif

@@ -42,13 +42,13 @@ static double arc_progress(const struct evaluate_helix *h)
     if (h->arc_done || h->arc.sweep_rad <= 0.0) {
         return 1.0;
     }
-    return maths_clamp(evaluate_arc_angle(&h->arc) / h->arc.sweep_rad, 0.0, 1.0);
+    return maths_clamp(takt_evaluate_arc_angle(&h->arc) / h->arc.sweep_rad, 0.0, 1.0);
 }
 
 /* Steps of the arc on the whole way, if it made them as often as here. */
 static double arc_steps(const struct evaluate_helix *h)
 {
-    return evaluate_arc_rate(&h->arc) * h->arc.radius * h->arc.sweep_rad;
+    return takt_evaluate_arc_rate(&h->arc) * h->arc.radius * h->arc.sweep_rad;
 }
 
 /* Part of the way that one step of the arc makes here; that of the leading straight axis. */
@@ -88,7 +88,7 @@ static void step_arc(struct evaluate_helix *h, struct evaluate_tick *tick)
 {
     struct evaluate_tick arc;
 
-    (void)evaluate_arc_next(&h->arc, &arc);
+    (void)takt_evaluate_arc_next(&h->arc, &arc);
     h->arc_done = h->arc.straight && h->arc.rest.left == 0;
     for (unsigned i = 0; i < 2; i++) {
         const unsigned axis = 1U << h->plane[i];
@@ -168,15 +168,15 @@ static void set_due(struct evaluate_helix *h)
     }
 }
 
-void evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
-                          const unsigned plane[2], const int64_t delta[AXIS_COUNT])
+void takt_evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
+                               const unsigned plane[2], const int64_t delta[AXIS_COUNT])
 {
     memset(h, 0, sizeof(*h));
     h->form = arc->form;
     h->plane[0] = plane[0];
     h->plane[1] = plane[1];
     set_straight(h, delta);
-    evaluate_arc_begin(&h->arc, arc);
+    takt_evaluate_arc_begin(&h->arc, arc);
     h->arc_done = h->arc.straight && h->arc.rest.left == 0;
     h->due = arc_leads(h) ? -0.5 * arc_spacing(h) : 0.0;
     set_due(h);
@@ -270,7 +270,7 @@ static bool next_plain(struct evaluate_helix *h, struct evaluate_tick *tick)
     return true;
 }
 
-bool evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick)
+bool takt_evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick)
 {
     *tick = (struct evaluate_tick){0};
     if (!(h->form == EVALUATE_PLAIN ? next_plain(h, tick) : next_improved(h, tick))) {
@@ -280,7 +280,7 @@ bool evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick)
     return true;
 }
 
-double evaluate_helix_due(const struct evaluate_helix *h)
+double takt_evaluate_helix_due(const struct evaluate_helix *h)
 {
     return h->due;
 }

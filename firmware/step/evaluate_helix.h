@@ -22,13 +22,13 @@ struct evaluate_helix {
 };
 
 /* plane: the arc's axes, different ones. delta: increments in steps; those of the plane are the arc's affair. */
-void evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
-                          const unsigned plane[2], const int64_t delta[AXIS_COUNT]);
+void takt_evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
+                               const unsigned plane[2], const int64_t delta[AXIS_COUNT]);
 
 /* The next tick. False: the end has been reached, *tick is empty. */
-bool evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick);
+bool takt_evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick);
 
 /* Which part of the way, 0 ... 1, has been done when the next tick is due, at constant speed evenly. 1 at the end. */
-double evaluate_helix_due(const struct evaluate_helix *h);
+double takt_evaluate_helix_due(const struct evaluate_helix *h);
 
 #endif

@@ -13,8 +13,8 @@
 
 #include <string.h>
 
-void evaluate_line_begin(struct evaluate_line *l, enum evaluate_form form,
-                         const int64_t delta[AXIS_COUNT])
+void takt_evaluate_line_begin(struct evaluate_line *l, enum evaluate_form form,
+                              const int64_t delta[AXIS_COUNT])
 {
     int64_t sum = 0;
 
@@ -65,7 +65,7 @@ static unsigned step_plain(struct evaluate_line *l)
     return 1U << l->leading;
 }
 
-bool evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick)
+bool takt_evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick)
 {
     *tick = (struct evaluate_tick){0};
     if (l->left == 0) {
@@ -78,7 +78,7 @@ bool evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick)
 }
 
 /* f = (V / h) |a| / sqrt(sum d^2), of the plain form (V / h) sum |d| / sqrt(sum d^2) */
-double evaluate_line_rate(const struct evaluate_line *l)
+double takt_evaluate_line_rate(const struct evaluate_line *l)
 {
     double squares = 0.0;
     double sum = 0.0;

@@ -18,13 +18,13 @@ struct evaluate_line {
 };
 
 /* delta: increments in steps, below EVALUATE_STEPS_MAX. */
-void evaluate_line_begin(struct evaluate_line *l, enum evaluate_form form,
-                         const int64_t delta[AXIS_COUNT]);
+void takt_evaluate_line_begin(struct evaluate_line *l, enum evaluate_form form,
+                              const int64_t delta[AXIS_COUNT]);
 
 /* The next tick. False: the end has been reached, *tick is empty. */
-bool evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick);
+bool takt_evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick);
 
 /* Ticks a second for a path speed of one step a second: improved |a| / sqrt(sum d^2), plain sum |d| / sqrt(sum d^2). */
-double evaluate_line_rate(const struct evaluate_line *l);
+double takt_evaluate_line_rate(const struct evaluate_line *l);
 
 #endif

@@ -10,7 +10,7 @@
 /* Steps beyond the highest rate that rounding can ask for in one cycle. */
 #define RATE_ROOM_STEPS 2.0
 
-void steps_init(struct steps *s, const struct steps_config *config, const struct point *start)
+void takt_steps_init(struct steps *s, const struct steps_config *config, const struct point *start)
 {
     memset(s, 0, sizeof(*s));
     s->config = *config;
@@ -18,7 +18,7 @@ void steps_init(struct steps *s, const struct steps_config *config, const struct
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (steps_has(s, i)) {
             assert(config->axis[i].steps_per_mm > 0.0);
-            s->at[i] = (int64_t)maths_round(start->at[i] * config->axis[i].steps_per_mm);
+            s->at[i] = (int64_t)takt_maths_round(start->at[i] * config->axis[i].steps_per_mm);
         }
     }
 }
@@ -26,7 +26,7 @@ void steps_init(struct steps *s, const struct steps_config *config, const struct
 static void raise_fault(struct steps *s, enum takt_error error, unsigned axis, double value)
 {
     if (s->fault.code == TAKT_OK) {
-        diagnostic_set(&s->fault, error, 0, 0, &AXIS_LETTERS[axis], 1, value);
+        takt_diagnostic_set(&s->fault, error, 0, 0, &AXIS_LETTERS[axis], 1, value);
     }
 }
 
@@ -46,7 +46,7 @@ static int64_t earliest_ns(const struct steps *s, const struct evaluate_tick *ti
 static void count_step(struct steps *s, unsigned i, bool backwards)
 {
     s->at[i] += backwards ? -1 : 1;
-    s->free_ns[i] = s->last_ns + (int64_t)maths_ceil(1e9 / s->config.axis[i].rate_max_hz);
+    s->free_ns[i] = s->last_ns + (int64_t)takt_maths_ceil(1e9 / s->config.axis[i].rate_max_hz);
 }
 
 static void send_pulse(struct steps *s, const struct step_port *port,
@@ -62,8 +62,8 @@ static void send_pulse(struct steps *s, const struct step_port *port,
     s->failed = !port->pulse(port->context, &pulse) || s->failed;
 }
 
-bool steps_emit(struct steps *s, const struct step_port *port, double part,
-                const struct evaluate_tick *tick)
+bool takt_steps_emit(struct steps *s, const struct step_port *port, double part,
+                     const struct evaluate_tick *tick)
 {
     const int64_t cycle_ns = (int64_t)s->config.cycle_us * 1000;
     const double wanted = maths_clamp(part, 0.0, 1.0) * (double)cycle_ns;
@@ -93,7 +93,7 @@ static void begin_cycle(struct steps *s, const struct step_port *port)
     s->failed = false;
     s->held.axes = 0;
     if (held.axes != 0) {
-        (void)steps_emit(s, port, 0.0, &held);
+        (void)takt_steps_emit(s, port, 0.0, &held);
     }
 }
 
@@ -176,28 +176,28 @@ static void enter_path(struct steps *s, const struct step_port *port)
     double part;
 
     s->path.active = false;
-    steps_even(s, port, &s->now, &curve->start, (struct steps_span){0.0, split});
-    if (s->held.axes == 0 && steps_path_begin(s, &s->next)) {
-        part = steps_path_place(s, &s->next.at);
+    takt_steps_even(s, port, &s->now, &curve->start, (struct steps_span){0.0, split});
+    if (s->held.axes == 0 && takt_steps_path_begin(s, &s->next)) {
+        part = takt_steps_path_place(s, &s->next.at);
         if (part >= 0.0) {
-            steps_path_follow(s, port, part, (struct steps_span){split, 1.0});
+            takt_steps_path_follow(s, port, part, (struct steps_span){split, 1.0});
             return;
         }
         s->path.active = false;
     }
-    steps_even(s, port, &curve->start, &s->next.at, (struct steps_span){split, 1.0});
+    takt_steps_even(s, port, &curve->start, &s->next.at, (struct steps_span){split, 1.0});
 }
 
 static void go_along(struct steps *s, const struct step_port *port)
 {
-    const double part = s->path.active ? steps_path_place(s, &s->next.at) : -1.0;
+    const double part = s->path.active ? takt_steps_path_place(s, &s->next.at) : -1.0;
 
     if (part >= 0.0) {
-        steps_path_follow(s, port, part, (struct steps_span){0.0, 1.0});
+        takt_steps_path_follow(s, port, part, (struct steps_span){0.0, 1.0});
         return;
     }
     s->path.active = false;
-    steps_even(s, port, &s->now, &s->next.at, (struct steps_span){0.0, 1.0});
+    takt_steps_even(s, port, &s->now, &s->next.at, (struct steps_span){0.0, 1.0});
 }
 
 static void step_to_next(struct steps *s, const struct step_port *port)
@@ -218,8 +218,8 @@ static void step_to_next(struct steps *s, const struct step_port *port)
     }
 }
 
-bool steps_cycle(struct steps *s, const struct step_port *port, const struct point *setpoint,
-                 const struct curve *curve, uint32_t number)
+bool takt_steps_cycle(struct steps *s, const struct step_port *port, const struct point *setpoint,
+                      const struct curve *curve, uint32_t number)
 {
     if (s->config.axes == 0U) {
         return true;
@@ -246,7 +246,7 @@ bool steps_cycle(struct steps *s, const struct step_port *port, const struct poi
 }
 
 /* Each cycle's way is shorter than the last by a T^2, until it is none. */
-void steps_brake(struct steps *s, const struct step_port *port)
+void takt_steps_brake(struct steps *s, const struct step_port *port)
 {
     const double cycle_s = 1e-6 * (double)s->config.cycle_us;
     struct point to = s->now;
@@ -264,15 +264,15 @@ void steps_brake(struct steps *s, const struct step_port *port)
     }
     s->path.active = false;
     begin_cycle(s, port);
-    steps_even(s, port, &s->now, &to, (struct steps_span){0.0, 1.0});
+    takt_steps_even(s, port, &s->now, &to, (struct steps_span){0.0, 1.0});
     s->now = s->next.at = to;
 }
 
-void steps_restart(struct steps *s)
+void takt_steps_restart(struct steps *s)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (steps_has(s, i)) {
-            s->at[i] = (int64_t)maths_round(s->read.at[i] * s->config.axis[i].steps_per_mm);
+            s->at[i] = (int64_t)takt_maths_round(s->read.at[i] * s->config.axis[i].steps_per_mm);
         }
         s->braking[i] = 0.0;
     }
@@ -282,7 +282,7 @@ void steps_restart(struct steps *s)
     s->fault.code = TAKT_OK;
 }
 
-void steps_get_actual(const struct steps *s, struct point *actual)
+void takt_steps_get_actual(const struct steps *s, struct point *actual)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (steps_has(s, i)) {
@@ -291,7 +291,7 @@ void steps_get_actual(const struct steps *s, struct point *actual)
     }
 }
 
-const struct diagnostic *steps_get_fault(const struct steps *s)
+const struct diagnostic *takt_steps_get_fault(const struct steps *s)
 {
     return &s->fault;
 }

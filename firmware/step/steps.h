@@ -1,7 +1,7 @@
 /*
  * The step drives of a machine as seen from the controller: setpoints in, pulses with their times out.
  *
- * Once a cycle steps_cycle hands all pulses of the cycle that begins to the port. Whatever the form, setpoints are what
+ * Once a cycle takt_steps_cycle hands all pulses of the cycle that begins to the port. Whatever the form, setpoints are what
  * counts: overrides, holds and corrections are in them.
  *
  *     even       every axis steps at the moment at which the straight way between two setpoints passes the middle between
@@ -39,7 +39,7 @@ struct steps_config {
         double steps_per_mm;           /* > 0 */
         double rate_max_hz;            /* > 0: more steps a second are an error */
         double following_error_max_mm; /* alarm beyond, if there is an encoder; 0: not watched */
-        double stop_mm_s2;             /* > 0: deceleration of steps_brake */
+        double stop_mm_s2;             /* > 0: deceleration of takt_steps_brake */
     } axis[AXIS_COUNT];
 };
 
@@ -52,24 +52,24 @@ static inline bool steps_are_there(const struct steps *s)
 }
 
 /* start: where the axes stand. */
-void steps_init(struct steps *s, const struct steps_config *config, const struct point *start);
+void takt_steps_init(struct steps *s, const struct steps_config *config, const struct point *start);
 
 /*
  * One cycle: reads the encoders, then hands over the pulses that bring the axes to the setpoint of the call before. curve:
- * what the setpoint is on, NULL: unknown; number: tells one block's curve from the next. False: see steps_get_fault.
+ * what the setpoint is on, NULL: unknown; number: tells one block's curve from the next. False: see takt_steps_get_fault.
  */
-bool steps_cycle(struct steps *s, const struct step_port *port, const struct point *setpoint,
-                 const struct curve *curve, uint32_t number);
+bool takt_steps_cycle(struct steps *s, const struct step_port *port, const struct point *setpoint,
+                      const struct curve *curve, uint32_t number);
 
-/* Instead of steps_cycle, after a fault: every axis brakes by itself. */
-void steps_brake(struct steps *s, const struct step_port *port);
+/* Instead of takt_steps_cycle, after a fault: every axis brakes by itself. */
+void takt_steps_brake(struct steps *s, const struct step_port *port);
 
 /* After a fault, at rest: the axes are where they stand, as reported; the fault is forgotten. */
-void steps_restart(struct steps *s);
+void takt_steps_restart(struct steps *s);
 
 /* Position of every step axis as of a setpoint STEPS_LATENCY_CYCLES ago; other axes are left alone. */
-void steps_get_actual(const struct steps *s, struct point *actual);
+void takt_steps_get_actual(const struct steps *s, struct point *actual);
 
-const struct diagnostic *steps_get_fault(const struct steps *s);
+const struct diagnostic *takt_steps_get_fault(const struct steps *s);
 
 #endif

@@ -33,7 +33,7 @@ static void begin(const struct steps *s, const struct point *from, const struct 
         if (steps_has(s, i)) {
             way[i].from = from->at[i] * ratio;
             way[i].to = to->at[i] * ratio;
-            way[i].end = (int64_t)maths_round(way[i].to);
+            way[i].end = (int64_t)takt_maths_round(way[i].to);
             set_due(&way[i], s->at[i]);
         }
     }
@@ -64,8 +64,8 @@ static struct evaluate_tick tick_at(const struct steps *s, const struct way way[
     return tick;
 }
 
-void steps_even(struct steps *s, const struct step_port *port, const struct point *from,
-                const struct point *to, struct steps_span span)
+void takt_steps_even(struct steps *s, const struct step_port *port, const struct point *from,
+                     const struct point *to, struct steps_span span)
 {
     struct way way[AXIS_COUNT];
     double due;
@@ -77,7 +77,7 @@ void steps_even(struct steps *s, const struct step_port *port, const struct poin
     while ((due = earliest(way)) <= 1.0) {
         const struct evaluate_tick tick = tick_at(s, way, due);
 
-        if (!steps_emit(s, port, span.from + (span.to - span.from) * due, &tick)) {
+        if (!takt_steps_emit(s, port, span.from + (span.to - span.from) * due, &tick)) {
             return;
         }
         for (unsigned i = 0; i < AXIS_COUNT; i++) {

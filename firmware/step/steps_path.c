@@ -29,7 +29,7 @@ static bool to_lattice(const struct steps *s, const struct point *p, int64_t lat
         if (!fits(steps)) {
             return false;
         }
-        lattice[i] = (int64_t)maths_round(steps);
+        lattice[i] = (int64_t)takt_maths_round(steps);
     }
     return true;
 }
@@ -49,13 +49,13 @@ static bool is_evaluable_arc(const struct steps *s, const struct curve *c)
 /* Whole turns that start, end and sweep on the lattice leave over. Below 0: the arc is shorter than its rounding. */
 static double lattice_turns(const struct curve *c, const struct evaluate_arc_config *arc)
 {
-    const double from = maths_atan2((double)arc->start[1], (double)arc->start[0]);
-    const double to = maths_atan2((double)arc->end[1], (double)arc->end[0]);
+    const double from = takt_maths_atan2((double)arc->start[1], (double)arc->start[0]);
+    const double to = takt_maths_atan2((double)arc->end[1], (double)arc->end[0]);
     const double rest = arc->clockwise ? from - to : to - from;
     const bool same = arc->start[0] == arc->end[0] && arc->start[1] == arc->end[1];
-    const double part = same ? 0.0 : rest - MATHS_TWO_PI * maths_floor(rest / MATHS_TWO_PI);
+    const double part = same ? 0.0 : rest - MATHS_TWO_PI * takt_maths_floor(rest / MATHS_TWO_PI);
 
-    return maths_round((maths_abs(c->arc.sweep_rad) - part) / MATHS_TWO_PI);
+    return takt_maths_round((maths_abs(c->arc.sweep_rad) - part) / MATHS_TWO_PI);
 }
 
 /* The circle on the lattice: its centre is the nearest position too. False: too small to be one. */
@@ -71,7 +71,7 @@ static bool begin_arc(struct steps *s, const struct curve *c, const int64_t star
 
     for (unsigned i = 0; i < 2; i++) {
         const double ratio = s->config.axis[plane[i]].steps_per_mm;
-        const int64_t centre = (int64_t)maths_round(c->arc.centre_mm[i] * ratio);
+        const int64_t centre = (int64_t)takt_maths_round(c->arc.centre_mm[i] * ratio);
 
         arc.start[i] = start[plane[i]] - centre;
         arc.end[i] = end[plane[i]] - centre;
@@ -86,8 +86,8 @@ static bool begin_arc(struct steps *s, const struct curve *c, const int64_t star
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         delta[i] = end[i] - start[i];
     }
-    evaluate_helix_begin(&s->path.helix, &arc, plane, delta);
-    s->path.due = evaluate_helix_due(&s->path.helix);
+    takt_evaluate_helix_begin(&s->path.helix, &arc, plane, delta);
+    s->path.due = takt_evaluate_helix_due(&s->path.helix);
     return true;
 }
 
@@ -104,13 +104,13 @@ static void begin_line(struct steps *s, const int64_t start[AXIS_COUNT],
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         delta[i] = end[i] - start[i];
     }
-    evaluate_line_begin(&s->path.line,
-                        s->config.form == STEPS_PLAIN ? EVALUATE_PLAIN : EVALUATE_IMPROVED, delta);
+    takt_evaluate_line_begin(
+        &s->path.line, s->config.form == STEPS_PLAIN ? EVALUATE_PLAIN : EVALUATE_IMPROVED, delta);
     s->path.ticks = s->path.line.left;
     set_line_due(&s->path);
 }
 
-bool steps_path_begin(struct steps *s, const struct steps_target *target)
+bool takt_steps_path_begin(struct steps *s, const struct steps_target *target)
 {
     const struct curve *c = &target->curve;
     int64_t start[AXIS_COUNT];
@@ -118,7 +118,7 @@ bool steps_path_begin(struct steps *s, const struct steps_target *target)
 
     memset(&s->path, 0, sizeof(s->path));
     s->path.curve = *c;
-    s->path.bent = c->kind == CURVE_ARC;
+    s->path.curved = c->kind == CURVE_ARC;
     if (!to_lattice(s, &c->start, start) || !to_lattice(s, &c->end, end)) {
         return false;
     }
@@ -142,35 +142,35 @@ static bool is_near(const struct steps *s, const struct point *a, const struct p
     return true;
 }
 
-double steps_path_place(const struct steps *s, const struct point *p)
+double takt_steps_path_place(const struct steps *s, const struct point *p)
 {
     const struct curve *c = &s->path.curve;
-    const double part = curve_place(c, p, s->path.part);
+    const double part = takt_curve_place(c, p, s->path.part);
     struct point on;
 
     if (part < -PART_ROOM || part > 1.0 + PART_ROOM) {
         return -1.0;
     }
-    curve_point(c, maths_clamp(part, 0.0, 1.0) * c->length_mm, &on);
+    takt_curve_point(c, maths_clamp(part, 0.0, 1.0) * c->length_mm, &on);
     return is_near(s, &on, p) ? maths_clamp(part, 0.0, 1.0) : -1.0;
 }
 
 /* False: the end has been reached. */
 static bool next_tick(struct steps_path *path, struct evaluate_tick *tick)
 {
-    if (path->bent) {
-        const bool any = evaluate_helix_next(&path->helix, tick);
+    if (path->curved) {
+        const bool any = takt_evaluate_helix_next(&path->helix, tick);
 
-        path->due = evaluate_helix_due(&path->helix);
+        path->due = takt_evaluate_helix_due(&path->helix);
         return any;
     }
     path->made++;
     set_line_due(path);
-    return evaluate_line_next(&path->line, tick);
+    return takt_evaluate_line_next(&path->line, tick);
 }
 
-void steps_path_follow(struct steps *s, const struct step_port *port, double part,
-                       struct steps_span span)
+void takt_steps_path_follow(struct steps *s, const struct step_port *port, double part,
+                            struct steps_span span)
 {
     struct steps_path *path = &s->path;
     const double from = path->part;
@@ -182,7 +182,7 @@ void steps_path_follow(struct steps *s, const struct step_port *port, double par
         if (!next_tick(path, &tick)) {
             break;
         }
-        (void)steps_emit(s, port, span.from + (span.to - span.from) * passed, &tick);
+        (void)takt_steps_emit(s, port, span.from + (span.to - span.from) * passed, &tick);
     }
     path->part = maths_max(path->part, part);
 }

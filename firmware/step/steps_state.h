@@ -10,7 +10,7 @@
 /* A block followed by an evaluation function. */
 struct steps_path {
     bool active;
-    bool bent; /* helix, else line */
+    bool curved; /* helix, else line */
     struct curve curve;
     double part;         /* of the curve, 0 ... 1, that has been stepped */
     double due;          /* part at which the next tick is due */
@@ -33,7 +33,7 @@ struct steps {
     struct steps_target next;   /* the setpoint of the last call */
     int64_t at[AXIS_COUNT];     /* steps made */
     struct point read;          /* by the encoders, at the start of the last cycle */
-    double braking[AXIS_COUNT]; /* steps_brake: mm in the cycle */
+    double braking[AXIS_COUNT]; /* takt_steps_brake: mm in the cycle */
     uint32_t number;            /* of the path */
     struct steps_path path;
     int64_t last_ns;             /* time of the last pulse, from the start of this cycle */

@@ -55,16 +55,16 @@ static uint8_t *begin_record(struct writer *w, uint16_t number, uint16_t axis, u
 static void write_field(struct writer *w, const struct settings_field *field, uint16_t axis,
                         const void *base)
 {
-    uint8_t *to = begin_record(w, field->number, axis, settings_field_bytes(field));
+    uint8_t *to = begin_record(w, field->number, axis, takt_settings_field_bytes(field));
 
     if (to != NULL)
-        settings_field_get(field, base, to);
+        takt_settings_field_get(field, base, to);
 }
 
 static void write_machine(struct writer *w, const struct machine *machine)
 {
-    for (size_t i = 0; i < settings_fields_count; i++) {
-        const struct settings_field *field = &settings_fields[i];
+    for (size_t i = 0; i < takt_settings_fields_count; i++) {
+        const struct settings_field *field = &takt_settings_fields[i];
 
         if (!field->of_axis)
             write_field(w, field, 0, machine);
@@ -77,14 +77,14 @@ static void write_machine(struct writer *w, const struct machine *machine)
 
 static void write_tables(struct writer *w, const struct correction_tables *tables)
 {
-    const uint32_t volume = settings_volume_bytes(&tables->volume);
-    const uint32_t axes = settings_axes_bytes(&tables->axes);
+    const uint32_t volume = takt_settings_volume_bytes(&tables->volume);
+    const uint32_t axes = takt_settings_axes_bytes(&tables->axes);
     uint8_t *to;
 
     if (volume > 0 && (to = begin_record(w, RECORD_VOLUME, 0, volume)) != NULL)
-        settings_volume_put(&tables->volume, to);
+        takt_settings_volume_put(&tables->volume, to);
     if (axes > 0 && (to = begin_record(w, RECORD_AXES, 0, axes)) != NULL)
-        settings_axes_put(&tables->axes, to);
+        takt_settings_axes_put(&tables->axes, to);
 }
 
 static void write_dcf(struct writer *w, uint16_t drive, const struct concise_dcf *dcf)
@@ -97,11 +97,11 @@ static void write_dcf(struct writer *w, uint16_t drive, const struct concise_dcf
 
 static uint32_t crc_of(const uint8_t *bytes, size_t size)
 {
-    return crc32_add(CRC32_START, bytes + HEAD_VERSION, size - HEAD_VERSION);
+    return takt_crc32_add(CRC32_START, bytes + HEAD_VERSION, size - HEAD_VERSION);
 }
 
-size_t settings_pack(const struct machine *machine, const struct correction_tables *tables,
-                     const struct concise_dcf *dcf, uint8_t *bytes, size_t room)
+size_t takt_settings_pack(const struct machine *machine, const struct correction_tables *tables,
+                          const struct concise_dcf *dcf, uint8_t *bytes, size_t room)
 {
     struct writer w = {bytes, SETTINGS_HEAD_BYTES, room, room < SETTINGS_HEAD_BYTES};
 
@@ -135,7 +135,7 @@ struct reader {
 
 static bool refuse(struct reader *r, enum takt_error code, double value)
 {
-    diagnostic_set(r->wrong, code, 0, 0, "", 0, value);
+    takt_diagnostic_set(r->wrong, code, 0, 0, "", 0, value);
     return false;
 }
 
@@ -152,9 +152,9 @@ static bool check_head(struct reader *r)
 
 static const struct settings_field *find_field(uint16_t number)
 {
-    for (size_t i = 0; i < settings_fields_count; i++) {
-        if (settings_fields[i].number == number)
-            return &settings_fields[i];
+    for (size_t i = 0; i < takt_settings_fields_count; i++) {
+        if (takt_settings_fields[i].number == number)
+            return &takt_settings_fields[i];
     }
     return NULL;
 }
@@ -162,14 +162,14 @@ static const struct settings_field *find_field(uint16_t number)
 static bool read_field(struct reader *r, const struct settings_field *field, uint16_t axis,
                        const uint8_t *value, uint32_t size)
 {
-    if (size != settings_field_bytes(field) || axis >= AXIS_COUNT)
+    if (size != takt_settings_field_bytes(field) || axis >= AXIS_COUNT)
         return refuse(r, TAKT_ERROR_SETTINGS_SHAPE, r->record);
     if (!field->of_axis) {
-        settings_field_set(field, r->machine, value);
+        takt_settings_field_set(field, r->machine, value);
         return true;
     }
     r->machine->axis[axis].present = true;
-    settings_field_set(field, &r->machine->axis[axis], value);
+    takt_settings_field_set(field, &r->machine->axis[axis], value);
     return true;
 }
 
@@ -179,7 +179,7 @@ static bool read_dcf(struct reader *r, uint16_t drive, const uint8_t *value, uin
     const struct concise_dcf dcf = {.bytes = value, .length = size};
     uint32_t object;
 
-    if (drive >= MACHINE_NODES_MAX || !concise_dcf_is_well(&dcf, &object))
+    if (drive >= MACHINE_NODES_MAX || !takt_concise_dcf_is_well(&dcf, &object))
         return refuse(r, TAKT_ERROR_SETTINGS_SHAPE, r->record);
     if (r->dcf != NULL)
         r->dcf[drive] = dcf;
@@ -236,7 +236,7 @@ static bool refuse_value(struct reader *r, const struct settings_field *field, u
     }
     for (const char *c = field->name; *c != '\0' && length < DIAGNOSTIC_WORD_MAX; c++)
         word[length++] = *c;
-    diagnostic_set(r->wrong, TAKT_ERROR_SETTINGS_VALUE, 0, 0, word, length, value);
+    takt_diagnostic_set(r->wrong, TAKT_ERROR_SETTINGS_VALUE, 0, 0, word, length, value);
     return false;
 }
 
@@ -245,11 +245,12 @@ static bool check_field(struct reader *r, const struct settings_field *field)
     double value;
 
     if (!field->of_axis)
-        return settings_field_check(field, r->machine, &value) || refuse_value(r, field, 0, value);
+        return takt_settings_field_check(field, r->machine, &value) ||
+               refuse_value(r, field, 0, value);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &r->machine->axis[i];
 
-        if (axis->present && !settings_field_check(field, axis, &value))
+        if (axis->present && !takt_settings_field_check(field, axis, &value))
             return refuse_value(r, field, i, value);
     }
     return true;
@@ -269,11 +270,11 @@ static bool check_kinds(struct reader *r)
 
 static bool check_machine(struct reader *r)
 {
-    for (size_t i = 0; i < settings_fields_count; i++) {
-        if (!check_field(r, &settings_fields[i]))
+    for (size_t i = 0; i < takt_settings_fields_count; i++) {
+        if (!check_field(r, &takt_settings_fields[i]))
             return false;
     }
-    return check_kinds(r) && machine_check(r->machine, r->wrong);
+    return check_kinds(r) && takt_machine_check(r->machine, r->wrong);
 }
 
 static bool take_tables(struct reader *r)
@@ -281,11 +282,11 @@ static bool take_tables(struct reader *r)
     struct table_rules rules;
     const char *problem = NULL;
 
-    correction_table_rules(&r->machine->correction, machine_axes(r->machine), &rules);
+    takt_correction_table_rules(&r->machine->correction, takt_machine_axes(r->machine), &rules);
     if (r->volume != NULL)
-        problem = settings_volume_take(r->volume, r->volume_size, &rules, &r->tables->volume);
+        problem = takt_settings_volume_take(r->volume, r->volume_size, &rules, &r->tables->volume);
     if (problem == NULL && r->axes != NULL)
-        problem = settings_axes_take(r->axes, r->axes_size, &rules, &r->tables->axes);
+        problem = takt_settings_axes_take(r->axes, r->axes_size, &rules, &r->tables->axes);
     if (problem == NULL)
         return true;
     (void)refuse(r, TAKT_ERROR_SETTINGS_TABLE, 0);
@@ -300,9 +301,9 @@ static void forget_axes(struct machine *machine)
         machine->axis[i].present = false;
 }
 
-bool settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
-                   struct correction_tables *tables, struct concise_dcf *dcf,
-                   struct diagnostic *wrong)
+bool takt_settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
+                        struct correction_tables *tables, struct concise_dcf *dcf,
+                        struct diagnostic *wrong)
 {
     struct reader r = {.bytes = bytes,
                        .size = size,
@@ -315,7 +316,7 @@ bool settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
     memset(tables, 0, sizeof *tables);
     if (dcf != NULL)
         memset(dcf, 0, MACHINE_NODES_MAX * sizeof *dcf);
-    machine_set_default(machine);
+    takt_machine_set_default(machine);
     forget_axes(machine);
     if (!check_head(&r))
         return false;
@@ -326,8 +327,9 @@ bool settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
     return check_machine(&r) && take_tables(&r);
 }
 
-bool settings_check_share(const struct machine *machine, const struct correction_tables *tables,
-                          struct correction *scratch, struct diagnostic *wrong)
+bool takt_settings_check_share(const struct machine *machine,
+                               const struct correction_tables *tables, struct correction *scratch,
+                               struct diagnostic *wrong)
 {
     const struct point start = {{0}};
     struct motion_bound most;
@@ -335,14 +337,15 @@ bool settings_check_share(const struct machine *machine, const struct correction
     enum axis axis;
     double share;
 
-    correction_init(scratch, &machine->correction, machine_axes(machine),
-                    1e-6 * (double)machine->cycle_us, tables, &start);
-    machine_motion_bound(machine, &most);
-    correction_reserve(scratch, &most, &need);
-    share = correction_largest_share(&need, &most, &axis);
+    takt_correction_init(scratch, &machine->correction, takt_machine_axes(machine),
+                         1e-6 * (double)machine->cycle_us, tables, &start);
+    takt_machine_motion_bound(machine, &most);
+    takt_correction_reserve(scratch, &most, &need);
+    share = takt_correction_largest_share(&need, &most, &axis);
     if (share <= CORRECTION_SHARE_MAX)
         return true;
-    diagnostic_set(wrong, TAKT_ERROR_SETTINGS_SHARE, 0, 0, &AXIS_LETTERS[axis], 1, 100.0 * share);
-    diagnostic_set_limit(wrong, 100.0 * CORRECTION_SHARE_MAX);
+    takt_diagnostic_set(wrong, TAKT_ERROR_SETTINGS_SHARE, 0, 0, &AXIS_LETTERS[axis], 1,
+                        100.0 * share);
+    takt_diagnostic_set_limit(wrong, 100.0 * CORRECTION_SHARE_MAX);
     return false;
 }

@@ -31,8 +31,8 @@
  * Writes settings to bytes, room of them; tables: NULL: none; dcf: of MACHINE_NODES_MAX drives, as of struct
  * controller_config; NULL: none. Returns their size; 0: they do not fit.
  */
-size_t settings_pack(const struct machine *machine, const struct correction_tables *tables,
-                     const struct concise_dcf *dcf, uint8_t *bytes, size_t room);
+size_t takt_settings_pack(const struct machine *machine, const struct correction_tables *tables,
+                          const struct concise_dcf *dcf, uint8_t *bytes, size_t room);
 
 /*
  * Reads and checks all of it: checksum, records, ranges, the machine as a whole, the tables, configurations of drives. bytes:
@@ -40,14 +40,15 @@ size_t settings_pack(const struct machine *machine, const struct correction_tabl
  * dcf: NULL: they are checked alone. False: *wrong says why, and neither holds anything of
  * use.
  */
-bool settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
-                   struct correction_tables *tables, struct concise_dcf *dcf,
-                   struct diagnostic *wrong);
+bool takt_settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
+                        struct correction_tables *tables, struct concise_dcf *dcf,
+                        struct diagnostic *wrong);
 
 /*
  * Do the corrections leave the axes enough to move? *scratch is overwritten. False: *wrong says which axis.
  */
-bool settings_check_share(const struct machine *machine, const struct correction_tables *tables,
-                          struct correction *scratch, struct diagnostic *wrong);
+bool takt_settings_check_share(const struct machine *machine,
+                               const struct correction_tables *tables, struct correction *scratch,
+                               struct diagnostic *wrong);
 
 #endif

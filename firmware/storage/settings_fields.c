@@ -49,18 +49,18 @@ static_assert(sizeof(double) == 8, "stored as IEEE-754");
 
 #define CORRECTION_MOST 1e6
 
-/* Of any build: machine_check knows how many this one has. */
+/* Highest bus of any build: takt_machine_check knows how many this one has. */
 #define BUS_MOST 255
 
 /* clang-format off */
-const struct settings_field settings_fields[] = {
+const struct settings_field takt_settings_fields[] = {
     ROW(1, false, SETTINGS_TEXT, offsetof(struct machine, name), MACHINE_NAME_MAX + 1, 0, 0, false, "name"),
     COUNT(2, cycle_us, 100, 10000),
     ABOVE(3, resolution_per_mm, 0, 1e9),
     FROM(4, path_tolerance_mm, 0, 100),
     COUNT(5, sharp_corners, 0, 1),
     COUNT(6, override_proportional, 0, 1),
-    COUNT(7, law, 0, 2),
+    COUNT(7, profile, 0, 2),
     COUNT(8, landing, 0, 2),
     COUNT(9, look_ahead_blocks, 1, MACHINE_LOOK_AHEAD_MAX),
     COUNT(10, interpolator, 0, 2),
@@ -144,7 +144,8 @@ const struct settings_field settings_fields[] = {
 };
 /* clang-format on */
 
-const size_t settings_fields_count = sizeof settings_fields / sizeof settings_fields[0];
+const size_t takt_settings_fields_count =
+    sizeof takt_settings_fields / sizeof takt_settings_fields[0];
 
 static uint32_t number_bytes(const struct settings_field *field)
 {
@@ -156,7 +157,7 @@ static bool is_plain(const struct settings_field *field)
     return field->type == SETTINGS_TEXT || field->type == SETTINGS_BYTES;
 }
 
-uint32_t settings_field_bytes(const struct settings_field *field)
+uint32_t takt_settings_field_bytes(const struct settings_field *field)
 {
     return is_plain(field) ? field->count : field->count * number_bytes(field);
 }
@@ -184,7 +185,7 @@ static void get_number(const struct settings_field *field, const uint8_t *at, ui
     }
 }
 
-void settings_field_get(const struct settings_field *field, const void *base, uint8_t *bytes)
+void takt_settings_field_get(const struct settings_field *field, const void *base, uint8_t *bytes)
 {
     const uint8_t *at = place_of(field, base);
 
@@ -227,7 +228,7 @@ static void set_number(const struct settings_field *field, uint8_t *at, const ui
         *at = narrow(word);
 }
 
-void settings_field_set(const struct settings_field *field, void *base, const uint8_t *bytes)
+void takt_settings_field_set(const struct settings_field *field, void *base, const uint8_t *bytes)
 {
     uint8_t *at = (uint8_t *)base + field->offset;
 
@@ -270,7 +271,7 @@ static bool text_ends(const uint8_t *at, uint32_t size)
     return false;
 }
 
-bool settings_field_check(const struct settings_field *field, const void *base, double *value)
+bool takt_settings_field_check(const struct settings_field *field, const void *base, double *value)
 {
     const uint8_t *at = place_of(field, base);
 
@@ -278,7 +279,7 @@ bool settings_field_check(const struct settings_field *field, const void *base, 
     if (field->type == SETTINGS_TEXT)
         return text_ends(at, field->count);
     if (field->type == SETTINGS_BYTES)
-        return true; /* machine_check knows what they may be */
+        return true; /* takt_machine_check knows what they may be */
     for (uint32_t i = 0; i < field->count; i++) {
         *value = value_at(field, at + (size_t)8 * i);
         if (!is_in_range(field, *value))

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes are as they stand in memory; machine_check knows which may be. */
+/* Bytes are as they stand in memory; takt_machine_check knows which may be. */
 enum settings_type {
     SETTINGS_TEXT,
     SETTINGS_BYTES,
@@ -30,17 +30,17 @@ struct settings_field {
     bool above; /* least itself is not allowed */
 };
 
-extern const struct settings_field settings_fields[];
-extern const size_t settings_fields_count;
+extern const struct settings_field takt_settings_fields[];
+extern const size_t takt_settings_fields_count;
 
 /* Bytes of a field's value in a record. */
-uint32_t settings_field_bytes(const struct settings_field *field);
+uint32_t takt_settings_field_bytes(const struct settings_field *field);
 
 /* From the struct to a record, and back. base: the struct the offset is in. */
-void settings_field_get(const struct settings_field *field, const void *base, uint8_t *bytes);
-void settings_field_set(const struct settings_field *field, void *base, const uint8_t *bytes);
+void takt_settings_field_get(const struct settings_field *field, const void *base, uint8_t *bytes);
+void takt_settings_field_set(const struct settings_field *field, void *base, const uint8_t *bytes);
 
 /* False: one of its numbers, *value, is out of range or not finite; or the text does not end. */
-bool settings_field_check(const struct settings_field *field, const void *base, double *value);
+bool takt_settings_field_check(const struct settings_field *field, const void *base, double *value);
 
 #endif

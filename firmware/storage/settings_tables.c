@@ -32,7 +32,7 @@ static uint32_t components_of(const struct grid *grid)
     return grid->turn_axis < AXIS_COUNT ? GRID_COMPONENTS : GRID_COMPONENTS - 1U;
 }
 
-uint32_t settings_volume_bytes(const struct grid *grid)
+uint32_t takt_settings_volume_bytes(const struct grid *grid)
 {
     if (grid->inputs == 0)
         return 0;
@@ -64,7 +64,7 @@ static void put_float(uint8_t *at, float value)
     little_put32(at, bits);
 }
 
-void settings_volume_put(const struct grid *grid, uint8_t *bytes)
+void takt_settings_volume_put(const struct grid *grid, uint8_t *bytes)
 {
     const size_t count = components_of(grid) * grid->size;
 
@@ -161,7 +161,7 @@ static void correct_at(const struct grid *grid, const unsigned index[TABLE_INPUT
     memset(k, 0, AXIS_COUNT * sizeof *k);
     for (unsigned i = 0; i < grid->inputs; i++)
         at.at[grid->input[i].axis] = grid->input[i].first_mm + index[i] / grid->input[i].per_mm;
-    (void)grid_add(grid, &at, 1.0F, k);
+    (void)takt_grid_add(grid, &at, 1.0F, k);
 }
 
 static bool keeps_within(const float k[AXIS_COUNT], double most)
@@ -222,8 +222,8 @@ static const char *check_points(const struct grid *grid, const struct table_rule
     return wrong;
 }
 
-const char *settings_volume_take(const uint8_t *bytes, uint32_t size,
-                                 const struct table_rules *rules, struct grid *grid)
+const char *takt_settings_volume_take(const uint8_t *bytes, uint32_t size,
+                                      const struct table_rules *rules, struct grid *grid)
 {
     const char *wrong;
 
@@ -234,7 +234,7 @@ const char *settings_volume_take(const uint8_t *bytes, uint32_t size,
     grid->components = (uint8_t)little_get32(bytes + 4);
     grid->turn_axis = (uint8_t)little_get32(bytes + 8);
     if (grid->inputs < 2 || grid->inputs > TABLE_INPUTS_MAX || !take_inputs(bytes, rules, grid) ||
-        !take_outputs(rules, grid) || settings_volume_bytes(grid) != size) {
+        !take_outputs(rules, grid) || takt_settings_volume_bytes(grid) != size) {
         grid->inputs = 0;
         return "the volume's axes or points are wrong";
     }
@@ -244,14 +244,14 @@ const char *settings_volume_take(const uint8_t *bytes, uint32_t size,
         grid->inputs = 0;
         return wrong;
     }
-    grid_bound_all(grid);
-    grid_patch_set_pace(grid);
+    takt_grid_bound_all(grid);
+    takt_grid_patch_set_pace(grid);
     return NULL;
 }
 
 /* ---- tables over one axis ---- */
 
-uint32_t settings_axes_bytes(const struct axis_tables *tables)
+uint32_t takt_settings_axes_bytes(const struct axis_tables *tables)
 {
     if (tables->count == 0)
         return 0;
@@ -276,7 +276,7 @@ static void put_pair(uint8_t *at, const struct axis_pair *pair)
     little_put32(at + 4, (uint32_t)pair->first | (uint32_t)pair->points << 16);
 }
 
-void settings_axes_put(const struct axis_tables *tables, uint8_t *bytes)
+void takt_settings_axes_put(const struct axis_tables *tables, uint8_t *bytes)
 {
     uint8_t *at = bytes + PAIRS;
 
@@ -331,7 +331,7 @@ static bool take_pairs(const uint8_t *bytes, const struct table_rules *rules, un
     return points == tables->points;
 }
 
-/* The correction at a knot, for both directions: a slope is judged from knot to knot. */
+/* The correction at a knot, for both directions: a slope is verified from knot to knot. */
 static bool check_knot(const struct axis_tables *tables, const struct axis_pair *pair, unsigned k,
                        const struct table_rules *rules)
 {
@@ -348,9 +348,9 @@ static bool check_knot(const struct axis_tables *tables, const struct axis_pair 
 
         approach[pair->input] = (float)direction;
         at.at[pair->input] = knot[k];
-        (void)axis_tables_sum(&one, &at, approach, 1.0F, here);
+        (void)takt_axis_tables_sum(&one, &at, approach, 1.0F, here);
         at.at[pair->input] = k > 0 ? knot[k - 1] : knot[k];
-        (void)axis_tables_sum(&one, &at, approach, 1.0F, before);
+        (void)takt_axis_tables_sum(&one, &at, approach, 1.0F, before);
         before[pair->corrected] = here[pair->corrected] - before[pair->corrected];
         if (!keeps_within(here, rules->largest_mm) ||
             !keeps_within(before, rules->steepest_ratio * step_mm))
@@ -374,8 +374,8 @@ static const char *check_pairs(const struct axis_tables *tables, const struct ta
     return NULL;
 }
 
-const char *settings_axes_take(const uint8_t *bytes, uint32_t size, const struct table_rules *rules,
-                               struct axis_tables *tables)
+const char *takt_settings_axes_take(const uint8_t *bytes, uint32_t size,
+                                    const struct table_rules *rules, struct axis_tables *tables)
 {
     const uint32_t count = size >= PAIRS ? little_get32(bytes) : 0;
     const char *wrong = "the axis tables' axes or points are wrong";
@@ -386,7 +386,7 @@ const char *settings_axes_take(const uint8_t *bytes, uint32_t size, const struct
         return "the axis tables are too short";
     tables->points = little_get32(bytes + 4);
     if (tables->points <= UINT16_MAX && take_pairs(bytes, rules, count, tables) &&
-        settings_axes_bytes(tables) == size) {
+        takt_settings_axes_bytes(tables) == size) {
         tables->knot_mm = (const double *)(const void *)knots;
         tables->piece =
             (const struct axis_piece *)(const void *)(knots + sizeof(double) * tables->points);

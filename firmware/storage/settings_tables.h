@@ -19,20 +19,20 @@
 #include <stdint.h>
 
 /* Bytes they take; 0: there are none. */
-uint32_t settings_volume_bytes(const struct grid *grid);
-uint32_t settings_axes_bytes(const struct axis_tables *tables);
+uint32_t takt_settings_volume_bytes(const struct grid *grid);
+uint32_t takt_settings_axes_bytes(const struct axis_tables *tables);
 
-/* Writes so many bytes. */
-void settings_volume_put(const struct grid *grid, uint8_t *bytes);
-void settings_axes_put(const struct axis_tables *tables, uint8_t *bytes);
+/* Writes this number of bytes. */
+void takt_settings_volume_put(const struct grid *grid, uint8_t *bytes);
+void takt_settings_axes_put(const struct axis_tables *tables, uint8_t *bytes);
 
 /*
  * Makes tables of bytes, which must outlive them and lie at a multiple of 8, and checks them by the rules. NULL: good;
  * else what is wrong.
  */
-const char *settings_volume_take(const uint8_t *bytes, uint32_t size,
-                                 const struct table_rules *rules, struct grid *grid);
-const char *settings_axes_take(const uint8_t *bytes, uint32_t size, const struct table_rules *rules,
-                               struct axis_tables *tables);
+const char *takt_settings_volume_take(const uint8_t *bytes, uint32_t size,
+                                      const struct table_rules *rules, struct grid *grid);
+const char *takt_settings_axes_take(const uint8_t *bytes, uint32_t size,
+                                    const struct table_rules *rules, struct axis_tables *tables);
 
 #endif

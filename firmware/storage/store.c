@@ -18,10 +18,10 @@ struct head {
 
 static uint32_t crc_of(const uint8_t *bytes, size_t length)
 {
-    return crc32_add(CRC32_START, bytes, length);
+    return takt_crc32_add(CRC32_START, bytes, length);
 }
 
-uint32_t store_room(const struct store *store)
+uint32_t takt_store_room(const struct store *store)
 {
     return store->flash.sector_bytes - STORE_HEAD_BYTES;
 }
@@ -45,7 +45,7 @@ static bool read_head(const struct store *store, unsigned sector, struct head *h
     return little_get32(word_at(at, HEAD_MARK)) == MARK &&
            little_get32(word_at(at, HEAD_CHECK)) ==
                crc_of(at, (size_t)HEAD_WORD_BYTES * HEAD_CHECK) &&
-           head->size > 0 && head->size <= store_room(store) &&
+           head->size > 0 && head->size <= takt_store_room(store) &&
            head->crc == crc_of(at + STORE_HEAD_BYTES, head->size);
 }
 
@@ -55,7 +55,7 @@ static bool is_later(uint32_t a, uint32_t b)
     return (int32_t)(a - b) > 0;
 }
 
-void store_open(struct store *store, const struct flash_port *flash)
+void takt_store_open(struct store *store, const struct flash_port *flash)
 {
     struct head head;
 
@@ -73,7 +73,7 @@ void store_open(struct store *store, const struct flash_port *flash)
     }
 }
 
-bool store_get(const struct store *store, const uint8_t **bytes, uint32_t *size)
+bool takt_store_get(const struct store *store, const uint8_t **bytes, uint32_t *size)
 {
     if (store->current == NO_SECTOR)
         return false;
@@ -107,12 +107,12 @@ static bool give_up(struct store *store)
     return false;
 }
 
-bool store_begin(struct store *store, uint32_t size)
+bool takt_store_begin(struct store *store, uint32_t size)
 {
     const unsigned sector = other_sector(store);
 
     (void)give_up(store);
-    if (size == 0 || size > store_room(store))
+    if (size == 0 || size > takt_store_room(store))
         return false;
     if (!is_blank(store, sector) &&
         (!store->flash.erase(store->flash.context, sector) || !is_blank(store, sector)))
@@ -144,7 +144,7 @@ static bool add_byte(struct store *store, uint8_t byte)
     return program_word(store);
 }
 
-bool store_write(struct store *store, const uint8_t *bytes, size_t length)
+bool takt_store_write(struct store *store, const uint8_t *bytes, size_t length)
 {
     if (length > store->coming - store->written - store->in_word || store->coming == 0)
         return give_up(store);
@@ -155,7 +155,7 @@ bool store_write(struct store *store, const uint8_t *bytes, size_t length)
     return true;
 }
 
-const uint8_t *store_look(const struct store *store)
+const uint8_t *takt_store_look(const struct store *store)
 {
     if (store->coming == 0 || store->written != store->coming)
         return NULL;
@@ -167,8 +167,8 @@ static void set_word(uint8_t *head, enum head_word word, uint32_t value)
     little_put32(head + (size_t)HEAD_WORD_BYTES * word, value);
 }
 
-void store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
-                     uint8_t head[STORE_HEAD_BYTES])
+void takt_store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
+                          uint8_t head[STORE_HEAD_BYTES])
 {
     memset(head, 0xFF, STORE_HEAD_BYTES);
     set_word(head, HEAD_MARK, MARK);
@@ -178,16 +178,16 @@ void store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
     set_word(head, HEAD_CHECK, crc_of(head, (size_t)HEAD_WORD_BYTES * HEAD_CHECK));
 }
 
-bool store_commit(struct store *store)
+bool takt_store_commit(struct store *store)
 {
-    const uint8_t *bytes = store_look(store);
+    const uint8_t *bytes = takt_store_look(store);
     const unsigned sector = other_sector(store);
     uint8_t made[STORE_HEAD_BYTES];
     struct head head;
 
     if (bytes == NULL)
         return false;
-    store_make_head(bytes, store->coming, store->sequence + 1, made);
+    takt_store_make_head(bytes, store->coming, store->sequence + 1, made);
     if (!store->flash.program(store->flash.context, sector, 0, made, 1) ||
         !read_head(store, sector, &head))
         return give_up(store);

@@ -19,8 +19,8 @@
 #define STORE_HEAD_BYTES FLASH_WORD_BYTES
 
 /* The head that makes bytes a set: whoever writes a sector by other means puts it before them. */
-void store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
-                     uint8_t head[STORE_HEAD_BYTES]);
+void takt_store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
+                          uint8_t head[STORE_HEAD_BYTES]);
 
 /* Private, but the caller owns it. */
 struct store {
@@ -34,27 +34,27 @@ struct store {
 };
 
 /* Looks what is there. The port is copied; its context stays the caller's. */
-void store_open(struct store *store, const struct flash_port *flash);
+void takt_store_open(struct store *store, const struct flash_port *flash);
 
 /* The set that counts, at an address that is a multiple of 8. False: there is none. */
-bool store_get(const struct store *store, const uint8_t **bytes, uint32_t *size);
+bool takt_store_get(const struct store *store, const uint8_t **bytes, uint32_t *size);
 
 /* Largest set. */
-uint32_t store_room(const struct store *store);
+uint32_t takt_store_room(const struct store *store);
 
 /*
  * Begins a new set beside the one that counts; one that was begun before is given up. Erases, unless the sector is blank:
  * see hal/flash.h. False: size is 0 or too large, or the flash refuses.
  */
-bool store_begin(struct store *store, uint32_t size);
+bool takt_store_begin(struct store *store, uint32_t size);
 
 /* The next bytes of it. False: more than announced, none has been begun, or the flash refuses; it is given up then. */
-bool store_write(struct store *store, const uint8_t *bytes, size_t length);
+bool takt_store_write(struct store *store, const uint8_t *bytes, size_t length);
 
 /* All bytes of the new set, to be looked at before it counts. NULL: they are not all there. */
-const uint8_t *store_look(const struct store *store);
+const uint8_t *takt_store_look(const struct store *store);
 
 /* The new set counts from now on. False: it is not complete, or not what was written; the old one still counts. */
-bool store_commit(struct store *store);
+bool takt_store_commit(struct store *store);
 
 #endif

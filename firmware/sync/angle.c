@@ -9,9 +9,9 @@
  *
  *     g = 1 - b^3,   h = 3/2 (1 - b)^2 (1 + b),   2 k = (1 - b)^3
  */
-void angle_tune(struct angle *a, double bandwidth_rad_cycle)
+void takt_angle_tune(struct angle *a, double bandwidth_rad_cycle)
 {
-    const double b = maths_exp(-bandwidth_rad_cycle);
+    const double b = takt_maths_exp(-bandwidth_rad_cycle);
     const double c = 1.0 - b;
 
     a->gain_angle = 1.0 - b * b * b;
@@ -19,12 +19,12 @@ void angle_tune(struct angle *a, double bandwidth_rad_cycle)
     a->gain_acceleration = c * c * c;
 }
 
-void angle_init(struct angle *a)
+void takt_angle_init(struct angle *a)
 {
     memset(a, 0, sizeof(*a));
 }
 
-struct angle_ahead angle_look_ahead(const struct angle *a, double cycles)
+struct angle_ahead takt_angle_look_ahead(const struct angle *a, double cycles)
 {
     return (struct angle_ahead){
         .rev = a->rev + cycles * (a->speed + 0.5 * cycles * a->acceleration),
@@ -33,9 +33,9 @@ struct angle_ahead angle_look_ahead(const struct angle *a, double cycles)
     };
 }
 
-void angle_follow(struct angle *a, double measured_rev)
+void takt_angle_follow(struct angle *a, double measured_rev)
 {
-    const struct angle_ahead expected = angle_look_ahead(a, 1.0);
+    const struct angle_ahead expected = takt_angle_look_ahead(a, 1.0);
     const double off = measured_rev - expected.rev;
 
     if (!a->begun) {

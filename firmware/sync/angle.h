@@ -30,20 +30,20 @@ struct angle_ahead {
 };
 
 /* Nothing has been measured yet. */
-void angle_init(struct angle *a);
+void takt_angle_init(struct angle *a);
 
 /* bandwidth > 0, in rad/cycle. The angle known so far stays. */
-void angle_tune(struct angle *a, double bandwidth_rad_cycle);
+void takt_angle_tune(struct angle *a, double bandwidth_rad_cycle);
 
 /* Every control cycle: what the encoder says at its start. */
-void angle_follow(struct angle *a, double measured_rev);
+void takt_angle_follow(struct angle *a, double measured_rev);
 static inline void angle_measure(struct angle *a, double measured_rev)
 {
     if (!a->stands || measured_rev != a->rev) {
-        angle_follow(a, measured_rev);
+        takt_angle_follow(a, measured_rev);
     }
 }
 
-struct angle_ahead angle_look_ahead(const struct angle *a, double cycles);
+struct angle_ahead takt_angle_look_ahead(const struct angle *a, double cycles);
 
 #endif

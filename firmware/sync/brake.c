@@ -15,7 +15,7 @@
 /* Halvings of a cycle: below the rounding of positions. */
 #define HALVINGS 56
 
-struct brake_state brake_advance(const struct brake_state *s, double j, double t)
+struct brake_state takt_brake_advance(const struct brake_state *s, double j, double t)
 {
     return (struct brake_state){
         .x_mm = s->x_mm + t * (s->v_mm_s + t * (0.5 * s->a_mm_s2 + t * j / 6.0)),
@@ -53,7 +53,7 @@ static double rest_position(const struct brake *b)
     struct brake_state s = b->from;
 
     for (unsigned i = 0; i < BRAKE_PHASES; i++) {
-        s = brake_advance(&s, b->jerk_mm_s3[i], b->time_s[i]);
+        s = takt_brake_advance(&s, b->jerk_mm_s3[i], b->time_s[i]);
     }
     return s.x_mm;
 }
@@ -65,10 +65,10 @@ static double turning_position(const struct brake_state *s, double jerk)
     const double root = maths_sqrt(maths_max(0.0, a * a - 2.0 * jerk * s->v_mm_s));
     const double time_s = 2.0 * s->v_mm_s / (root - a);
 
-    return brake_advance(s, jerk, time_s).x_mm;
+    return takt_brake_advance(s, jerk, time_s).x_mm;
 }
 
-double brake_reach(const struct brake_state *s, const struct brake_limits *limits)
+double takt_brake_reach(const struct brake_state *s, const struct brake_limits *limits)
 {
     struct brake b;
 
@@ -79,29 +79,31 @@ double brake_reach(const struct brake_state *s, const struct brake_limits *limit
     return maths_max(s->x_mm, rest_position(&b));
 }
 
-void brake_begin(struct brake *b, const struct brake_state *s, const struct brake_limits *limits)
+void takt_brake_begin(struct brake *b, const struct brake_state *s,
+                      const struct brake_limits *limits)
 {
     plan(b, s, limits);
     b->end_mm = rest_position(b);
 }
 
-void brake_begin_at(struct brake *b, const struct brake_state *s, const struct brake_limits *limits,
-                    double jerk_mm_s3, double time_s, double end_mm)
+void takt_brake_begin_at(struct brake *b, const struct brake_state *s,
+                         const struct brake_limits *limits, double jerk_mm_s3, double time_s,
+                         double end_mm)
 {
     double low_s = 0.0;
     double high_s = time_s;
 
     for (int i = 0; i < HALVINGS; i++) {
         const double middle_s = 0.5 * (low_s + high_s);
-        const struct brake_state later = brake_advance(s, jerk_mm_s3, middle_s);
+        const struct brake_state later = takt_brake_advance(s, jerk_mm_s3, middle_s);
 
-        if (brake_reach(&later, limits) <= end_mm) {
+        if (takt_brake_reach(&later, limits) <= end_mm) {
             low_s = middle_s;
         } else {
             high_s = middle_s;
         }
     }
-    const struct brake_state later = brake_advance(s, jerk_mm_s3, low_s);
+    const struct brake_state later = takt_brake_advance(s, jerk_mm_s3, low_s);
 
     plan(b, &later, limits);
     b->from = *s;
@@ -110,13 +112,13 @@ void brake_begin_at(struct brake *b, const struct brake_state *s, const struct b
     b->end_mm = end_mm;
 }
 
-bool brake_step(struct brake *b, double cycle_s, struct brake_state *s)
+bool takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s)
 {
     double left_s = b->passed_s + cycle_s;
 
     while (b->phase < BRAKE_PHASES && left_s >= b->time_s[b->phase]) {
         left_s -= b->time_s[b->phase];
-        b->from = brake_advance(&b->from, b->jerk_mm_s3[b->phase], b->time_s[b->phase]);
+        b->from = takt_brake_advance(&b->from, b->jerk_mm_s3[b->phase], b->time_s[b->phase]);
         b->phase++;
     }
     b->passed_s = left_s;
@@ -124,6 +126,6 @@ bool brake_step(struct brake *b, double cycle_s, struct brake_state *s)
         *s = (struct brake_state){.x_mm = b->end_mm};
         return true;
     }
-    *s = brake_advance(&b->from, b->jerk_mm_s3[b->phase], left_s);
+    *s = takt_brake_advance(&b->from, b->jerk_mm_s3[b->phase], left_s);
     return false;
 }

@@ -33,22 +33,25 @@ struct brake {
 };
 
 /* The state after some time of constant jerk. */
-struct brake_state brake_advance(const struct brake_state *s, double jerk_mm_s3, double time_s);
+struct brake_state takt_brake_advance(const struct brake_state *s, double jerk_mm_s3,
+                                      double time_s);
 
 /* The farthest that a point gets in the positive direction when it comes to rest from now on: its position. */
-double brake_reach(const struct brake_state *s, const struct brake_limits *limits);
+double takt_brake_reach(const struct brake_state *s, const struct brake_limits *limits);
 
 /* To rest, wherever that is. */
-void brake_begin(struct brake *b, const struct brake_state *s, const struct brake_limits *limits);
+void takt_brake_begin(struct brake *b, const struct brake_state *s,
+                      const struct brake_limits *limits);
 
 /*
- * To rest at a position that brake_reach(s) is not beyond, but the state after time_s of jerk_mm_s3 is: that jerk goes
+ * To rest at a position that takt_brake_reach(s) is not beyond, but the state after time_s of jerk_mm_s3 is: that jerk goes
  * on for the part of the time after which the reach is the position.
  */
-void brake_begin_at(struct brake *b, const struct brake_state *s, const struct brake_limits *limits,
-                    double jerk_mm_s3, double time_s, double end_mm);
+void takt_brake_begin_at(struct brake *b, const struct brake_state *s,
+                         const struct brake_limits *limits, double jerk_mm_s3, double time_s,
+                         double end_mm);
 
 /* The next cycle. True: it is at rest now. */
-bool brake_step(struct brake *b, double cycle_s, struct brake_state *s);
+bool takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s);
 
 #endif

@@ -27,14 +27,14 @@ struct chain {
 };
 
 /* The path's oldest block begins a chain. */
-void chain_begin(struct chain *c, struct path *path);
+void takt_chain_begin(struct chain *c, struct path *path);
 
 /* Takes in blocks that have come since. A few each time. */
-void chain_extend(struct chain *c);
+void takt_chain_extend(struct chain *c);
 
-struct chain_leg chain_first_leg(const struct chain *c, double zero_rev);
+struct chain_leg takt_chain_first_leg(const struct chain *c, double zero_rev);
 
 /* The leg behind this one, where the thread goes on in phase. False: the chain ends with it. */
-bool chain_next_leg(const struct chain *c, struct chain_leg *leg);
+bool takt_chain_next_leg(const struct chain *c, struct chain_leg *leg);
 
 #endif

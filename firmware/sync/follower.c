@@ -24,15 +24,15 @@
 
 #define VELOCITY_PART 0.5
 
-void follower_init(struct follower *f, double cycle_s)
+void takt_follower_init(struct follower *f, double cycle_s)
 {
     memset(f, 0, sizeof(*f));
     f->cycle_s = cycle_s;
 }
 
-void follower_tune(struct follower *f, double bandwidth_rad_cycle)
+void takt_follower_tune(struct follower *f, double bandwidth_rad_cycle)
 {
-    const double c = 1.0 - maths_exp(-RATE_RATIO * bandwidth_rad_cycle);
+    const double c = 1.0 - takt_maths_exp(-RATE_RATIO * bandwidth_rad_cycle);
     const double a = c * (3.0 + c * (c / 3.0 - 1.5));
     const double va = c * c * (3.0 - c);
 
@@ -41,7 +41,7 @@ void follower_tune(struct follower *f, double bandwidth_rad_cycle)
     f->gain_x = c * c * c / va / f->cycle_s;
 }
 
-void follower_start(struct follower *f, const struct brake_limits *limits)
+void takt_follower_start(struct follower *f, const struct brake_limits *limits)
 {
     memset(&f->at, 0, sizeof(f->at));
     f->limits = *limits;
@@ -103,12 +103,12 @@ static void step_brake(struct follower *f)
 {
     struct brake_state s;
 
-    f->rests = brake_step(&f->brake, f->cycle_s, &s);
+    f->rests = takt_brake_step(&f->brake, f->cycle_s, &s);
     f->at = mirrored(&s, f->sense);
 }
 
-void follower_step(struct follower *f, const struct follower_target *target,
-                   const struct follower_end *end)
+void takt_follower_step(struct follower *f, const struct follower_target *target,
+                        const struct follower_end *end)
 {
     if (f->braking) {
         step_brake(f);
@@ -116,25 +116,25 @@ void follower_step(struct follower *f, const struct follower_target *target,
     }
     const double jerk = allowed_jerk(f, wanted_jerk(f, target));
     const struct brake_state now = mirrored(&f->at, end->sense);
-    const struct brake_state next = brake_advance(&now, end->sense * jerk, f->cycle_s);
+    const struct brake_state next = takt_brake_advance(&now, end->sense * jerk, f->cycle_s);
     const double end_mm = end->sense * end->x_mm;
 
-    if (brake_reach(&next, &f->limits) <= end_mm) {
+    if (takt_brake_reach(&next, &f->limits) <= end_mm) {
         f->at = mirrored(&next, end->sense);
         return;
     }
     f->braking = true;
     f->sense = end->sense;
-    brake_begin_at(&f->brake, &now, &f->limits, end->sense * jerk, f->cycle_s, end_mm);
+    takt_brake_begin_at(&f->brake, &now, &f->limits, end->sense * jerk, f->cycle_s, end_mm);
     step_brake(f);
 }
 
-void follower_brake(struct follower *f)
+void takt_follower_brake(struct follower *f)
 {
     if (f->braking) {
         return;
     }
     f->braking = true;
     f->sense = 1.0;
-    brake_begin(&f->brake, &f->at, &f->limits);
+    takt_brake_begin(&f->brake, &f->at, &f->limits);
 }

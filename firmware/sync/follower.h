@@ -36,19 +36,19 @@ struct follower {
     struct brake brake;    /* as if sense were 1 */
 };
 
-void follower_init(struct follower *f, double cycle_s);
+void takt_follower_init(struct follower *f, double cycle_s);
 
 /* bandwidth_rad_cycle: of what the target has been filtered by; the follower is twice as fast. */
-void follower_tune(struct follower *f, double bandwidth_rad_cycle);
+void takt_follower_tune(struct follower *f, double bandwidth_rad_cycle);
 
 /* At rest at 0. */
-void follower_start(struct follower *f, const struct brake_limits *limits);
+void takt_follower_start(struct follower *f, const struct brake_limits *limits);
 
 /* One cycle. target: at the end of the last one; its jerk in the middle of this one. */
-void follower_step(struct follower *f, const struct follower_target *target,
-                   const struct follower_end *end);
+void takt_follower_step(struct follower *f, const struct follower_target *target,
+                        const struct follower_end *end);
 
 /* From now on it comes to rest as fast as it can. */
-void follower_brake(struct follower *f);
+void takt_follower_brake(struct follower *f);
 
 #endif

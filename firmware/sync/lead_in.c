@@ -13,8 +13,8 @@
 #define CYCLES_MIN 4.0
 
 /* Velocity follows s(t/T) up to v = pitch speed: T = max(PEAK_FIRST v/A, sqrt(PEAK_SECOND v/J)), way = speed T. */
-double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
-                   double cycle_s)
+double takt_lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
+                        double cycle_s)
 {
     const double v = LEAD_IN_ROOM * pitch_mm * speed_rev_s;
     const double time_s = maths_max(PEAK_FIRST * v / limits->acceleration_mm_s2,
@@ -23,13 +23,13 @@ double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limit
     return LEAD_IN_ROOM * speed_rev_s * maths_max(time_s, CYCLES_MIN * cycle_s);
 }
 
-bool lead_in_is_over(const struct lead_in *l, double rev)
+bool takt_lead_in_is_over(const struct lead_in *l, double rev)
 {
     return rev >= l->zero_rev + 0.5 * l->way_rev;
 }
 
 /* x = pitch way integral of s(u), u = (rev - start)/way; the integral is u^4 (5/2 - 3 u + u^2). */
-struct lead_in_place lead_in_at(const struct lead_in *l, double rev)
+struct lead_in_place takt_lead_in_at(const struct lead_in *l, double rev)
 {
     const double u = (rev - l->zero_rev) / l->way_rev + 0.5;
 

@@ -33,14 +33,14 @@ struct lead_in_place {
     double first, second, third;
 };
 
-/* The way that a spindle of so many rev/s > 0 needs: the axes then keep their acceleration and jerk. */
-double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
-                   double cycle_s);
+/* The way that a spindle of speed_rev_s > 0 needs: the axes then keep their acceleration and jerk. */
+double takt_lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
+                        double cycle_s);
 
 /* For an angle up to the end of the cam, and on the thread behind it. */
-struct lead_in_place lead_in_at(const struct lead_in *l, double rev);
+struct lead_in_place takt_lead_in_at(const struct lead_in *l, double rev);
 
 /* Is the thread itself reached? */
-bool lead_in_is_over(const struct lead_in *l, double rev);
+bool takt_lead_in_is_over(const struct lead_in *l, double rev);
 
 #endif

@@ -10,7 +10,7 @@
 #define GUARD_REV  0.02
 #define SLOW_REV_S 1.0
 
-double tap_turns(const struct tap *t)
+double takt_tap_turns(const struct tap *t)
 {
     const double w = t->in_rev_s;
 
@@ -21,7 +21,7 @@ double tap_turns(const struct tap *t)
  * Turning back at once takes w delay + w^2/(2 ramp) more turns. As long as there are more than these the speed is that
  * from which the rest can be slowed down in: w = sqrt(2 part ramp (turns left - w delay)).
  */
-double tap_command(struct tap *t, double turns_left, double speed_rev_s)
+double takt_tap_command(struct tap *t, double turns_left, double speed_rev_s)
 {
     const double w = maths_max(0.0, speed_rev_s);
     const double left = turns_left - GUARD_REV - w * DELAY_S;

@@ -14,9 +14,9 @@ struct tap {
 };
 
 /* Turns that turning back takes at least. */
-double tap_turns(const struct tap *t);
+double takt_tap_turns(const struct tap *t);
 
 /* Each cycle: the speed to command, positive into the hole. turns_left: to the bottom, speed_rev_s: as measured. */
-double tap_command(struct tap *t, double turns_left, double speed_rev_s);
+double takt_tap_command(struct tap *t, double turns_left, double speed_rev_s);
 
 #endif

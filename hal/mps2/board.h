@@ -24,13 +24,13 @@ static inline void board_raise(unsigned interrupt)
 }
 
 /* Handlers, uart.c. */
-void uart_0_receive(void);
-void uart_0_send(void);
-void uart_1_receive(void);
-void uart_1_send(void);
-void uart_2_receive(void);
-void uart_2_send(void);
-void uart_3_receive(void);
-void uart_3_send(void);
+void takt_uart_0_receive(void);
+void takt_uart_0_send(void);
+void takt_uart_1_receive(void);
+void takt_uart_1_send(void);
+void takt_uart_2_receive(void);
+void takt_uart_2_send(void);
+void takt_uart_3_receive(void);
+void takt_uart_3_send(void);
 
 #endif

@@ -13,7 +13,7 @@ static struct {
     bool is_unread;
 } line;
 
-/* After so many interrupts without a byte sent nobody reads: a control cycle has at least one, so that is 0.2 s at 1 ms. */
+/* After this many interrupts without a byte sent nobody reads: each control cycle has one or more, so 0.2 s at 1 ms. */
 #define STILL_MAX 200
 
 /*
@@ -26,7 +26,7 @@ static void write(void *context, const char *text, size_t length)
     unsigned still = 0;
 
     (void)context;
-    while (!uart_send(&line.uart, text, length)) {
+    while (!takt_uart_send(&line.uart, text, length)) {
         if (line.is_unread)
             return;
         cortex_sleep();
@@ -40,16 +40,16 @@ static void write(void *context, const char *text, size_t length)
 static void take(void *context, uint8_t byte)
 {
     (void)context;
-    embedded_console_take_byte(&line.console, byte);
+    takt_embedded_console_take_byte(&line.console, byte);
 }
 
-const struct service_lines *console_line_get_lines(void)
+const struct service_lines *takt_console_line_get_lines(void)
 {
-    line.lines = embedded_console_get_lines(&line.console);
+    line.lines = takt_embedded_console_get_lines(&line.console);
     return &line.lines;
 }
 
-void console_line_open(struct embedded *embedded)
+void takt_console_line_open(struct embedded *embedded)
 {
     const struct embedded_console_config config = {
         .embedded = embedded,
@@ -57,11 +57,11 @@ void console_line_open(struct embedded *embedded)
         .write = write,
     };
 
-    uart_open(&line.uart, CONSOLE_UART, take, NULL);
-    embedded_console_init(&line.console, &config);
+    takt_uart_open(&line.uart, CONSOLE_UART, take, NULL);
+    takt_embedded_console_init(&line.console, &config);
 }
 
-void console_line_serve(void)
+void takt_console_line_serve(void)
 {
-    embedded_console_background(&line.console);
+    takt_embedded_console_background(&line.console);
 }

@@ -7,12 +7,12 @@
 #include "port/embedded.h"
 
 /* For embedded_config: NULL: there is no console. */
-const struct service_lines *console_line_get_lines(void);
+const struct service_lines *takt_console_line_get_lines(void);
 
-/* After embedded_init. */
-void console_line_open(struct embedded *embedded);
+/* After takt_embedded_init. */
+void takt_console_line_open(struct embedded *embedded);
 
 /* From the background, as often as it comes round. */
-void console_line_serve(void);
+void takt_console_line_serve(void);
 
 #endif

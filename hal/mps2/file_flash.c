@@ -15,8 +15,8 @@ static uint8_t *mirror_of(struct file_flash *flash, unsigned sector, uint32_t of
 /* Bytes of the mirror to the file. */
 static bool keep(struct file_flash *flash, unsigned sector, uint32_t offset, uint32_t length)
 {
-    return semihosting_seek(flash->file, sector * FILE_FLASH_SECTOR_BYTES + offset) &&
-           semihosting_write(flash->file, mirror_of(flash, sector, offset), length);
+    return takt_semihosting_seek(flash->file, sector * FILE_FLASH_SECTOR_BYTES + offset) &&
+           takt_semihosting_write(flash->file, mirror_of(flash, sector, offset), length);
 }
 
 static bool erase(void *context, unsigned sector)
@@ -47,7 +47,7 @@ static bool program(void *context, unsigned sector, uint32_t offset, const uint8
     return same;
 }
 
-bool file_flash_open(struct file_flash *flash, const char *path, struct flash_port *port)
+bool takt_file_flash_open(struct file_flash *flash, const char *path, struct flash_port *port)
 {
     *port = (struct flash_port){
         .sector_bytes = FILE_FLASH_SECTOR_BYTES,
@@ -56,7 +56,7 @@ bool file_flash_open(struct file_flash *flash, const char *path, struct flash_po
         .program = program,
         .context = flash,
     };
-    flash->file = semihosting_open(path, SEMIHOSTING_UPDATE);
-    return flash->file >= 0 && semihosting_read(flash->file, flash->mirror, sizeof flash->mirror) ==
-                                   sizeof flash->mirror;
+    flash->file = takt_semihosting_open(path, SEMIHOSTING_UPDATE);
+    return flash->file >= 0 && takt_semihosting_read(flash->file, flash->mirror,
+                                                     sizeof flash->mirror) == sizeof flash->mirror;
 }

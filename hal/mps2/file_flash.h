@@ -19,6 +19,6 @@ struct file_flash {
 };
 
 /* The file holds both sectors, one after the other. False: it is not there, or shorter. */
-bool file_flash_open(struct file_flash *flash, const char *path, struct flash_port *port);
+bool takt_file_flash_open(struct file_flash *flash, const char *path, struct flash_port *port);
 
 #endif

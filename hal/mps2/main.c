@@ -33,7 +33,7 @@
 /* Until somebody is heard on the bus. */
 #define TICKS_ANNOUNCE 200U
 
-/* Until all drives are in step a cycle takes so many ticks: they boot by the clock of their own side. */
+/* Until all drives are in step a cycle takes this many ticks: they boot by the clock of their own side. */
 #define TICKS_STARTING 5U
 /* One that has been in step and does not answer for so long is given up. */
 #define TICKS_PATIENCE 5000U
@@ -78,21 +78,21 @@ static uint32_t now_ns(void *context)
 static void reply(void *context, const uint8_t *bytes, size_t length)
 {
     (void)context;
-    (void)uart_send(&board.panel, bytes, length);
+    (void)takt_uart_send(&board.panel, bytes, length);
 }
 
 static void write_log(void *context, const char *text)
 {
     (void)context;
-    if (uart_send(&board.log, text, strlen(text)))
-        (void)uart_send(&board.log, "\r\n", 2);
+    if (takt_uart_send(&board.log, text, strlen(text)))
+        (void)takt_uart_send(&board.log, "\r\n", 2);
 }
 
 /* -- interrupts -- */
 
 static void take_panel_byte(void *context, uint8_t byte)
 {
-    embedded_take_byte(&board.embedded, byte, now_us(context));
+    takt_embedded_take_byte(&board.embedded, byte, now_us(context));
 }
 
 static const struct machine_axis *machine_axis_of(unsigned axis)
@@ -110,8 +110,8 @@ static void give_up_silent(void)
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = machine_axis_of(i);
 
-        if (is_drive(axis) && !slcan_can_has_answered(&board.can, axis->drive_node))
-            slcan_can_give_up(&board.can, axis->drive_node);
+        if (is_drive(axis) && !takt_slcan_can_has_answered(&board.can, axis->drive_node))
+            takt_slcan_can_give_up(&board.can, axis->drive_node);
     }
 }
 
@@ -126,9 +126,9 @@ static bool have_answered(bool *all_in_step)
 
         if (!is_drive(axis))
             continue;
-        if (!slcan_can_is_in_step(&board.can, axis->drive_node))
+        if (!takt_slcan_can_is_in_step(&board.can, axis->drive_node))
             *all_in_step = false;
-        if (!slcan_can_has_answered(&board.can, axis->drive_node))
+        if (!takt_slcan_can_has_answered(&board.can, axis->drive_node))
             answered = false;
     }
     return answered;
@@ -138,7 +138,7 @@ static bool is_due(void)
 {
     bool all_in_step;
 
-    if (!uart_is_idle(&board.bus))
+    if (!takt_uart_is_idle(&board.bus))
         return false;
     if (have_answered(&all_in_step))
         return all_in_step || board.waited >= TICKS_STARTING;
@@ -149,22 +149,22 @@ static bool is_due(void)
 }
 
 /* A cycle is late by the machine's own time, not by that of a slow serial line: none is counted as such. */
-void port_systick(void)
+void takt_port_systick(void)
 {
     const struct inputs inputs = inputs_idle();
 
     if (board.ticks++ % TICKS_ANNOUNCE == 0)
-        (void)slcan_can_announce(&board.can);
+        (void)takt_slcan_can_announce(&board.can);
     board.waited++;
     if (!is_due())
         return;
     board.waited = 0;
-    embedded_cycle(&board.embedded, &inputs, false);
+    takt_embedded_cycle(&board.embedded, &inputs, false);
 }
 
-STARTUP_INTERRUPTS(board_interrupts,
-                   20) = {uart_0_receive, uart_0_send, uart_1_receive,        uart_1_send,
-                          uart_2_receive, uart_2_send, [18] = uart_3_receive, uart_3_send};
+STARTUP_INTERRUPTS(board_interrupts, 20) = {
+    takt_uart_0_receive, takt_uart_0_send, takt_uart_1_receive,        takt_uart_1_send,
+    takt_uart_2_receive, takt_uart_2_send, [18] = takt_uart_3_receive, takt_uart_3_send};
 
 /* -- start -- */
 
@@ -174,7 +174,7 @@ static void open_embedded(void)
     const struct embedded_config config = {
         .machine = &machine,
         .core = &board.core,
-        .can.port[0] = slcan_can_get_port(&board.can),
+        .can.port[0] = takt_slcan_can_get_port(&board.can),
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
         .port = {.lock = cortex_lock,
@@ -183,16 +183,16 @@ static void open_embedded(void)
                  .now_ns = now_ns,
                  .reply = reply,
                  .log = write_log},
-        .lines = console_line_get_lines(),
+        .lines = takt_console_line_get_lines(),
         .unit = PANEL_UNIT,
         .gap_us = PANEL_GAP_US,
         .name = "takt " TAKT_VERSION " on MPS2",
     };
 
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     for (uint32_t i = 0; i < TOOLS_MAX; i++)
         board.tools[i].number = i + 1;
-    embedded_init(&board.embedded, &config);
+    takt_embedded_init(&board.embedded, &config);
 }
 
 /* Not inlined: on the stack its diagnostic does not lie beside the machine, where the deepest call begins. */
@@ -200,8 +200,8 @@ static __attribute__((noinline)) void refuse_damaged(void)
 {
     struct diagnostic damage;
 
-    if (!image_is_sound(&damage))
-        embedded_refuse(&board.embedded, &damage);
+    if (!takt_image_is_sound(&damage))
+        takt_embedded_refuse(&board.embedded, &damage);
 }
 
 static void start_ticks(void)
@@ -214,17 +214,17 @@ static void start_ticks(void)
 
 int main(void)
 {
-    uart_open(&board.log, 2, NULL, NULL);
-    uart_open(&board.bus, 1, slcan_can_take, &board.can);
-    slcan_can_open(&board.can, &board.bus);
+    takt_uart_open(&board.log, 2, NULL, NULL);
+    takt_uart_open(&board.bus, 1, takt_slcan_can_take, &board.can);
+    takt_slcan_can_open(&board.can, &board.bus);
     open_embedded();
     refuse_damaged();
-    uart_open(&board.panel, 0, take_panel_byte, NULL);
-    console_line_open(&board.embedded);
+    takt_uart_open(&board.panel, 0, take_panel_byte, NULL);
+    takt_console_line_open(&board.embedded);
     start_ticks();
     for (;;) {
-        embedded_background(&board.embedded);
-        console_line_serve();
+        takt_embedded_background(&board.embedded);
+        takt_console_line_serve();
         cortex_sleep();
     }
 }

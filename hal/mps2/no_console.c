@@ -3,16 +3,16 @@
 
 #include <stddef.h>
 
-const struct service_lines *console_line_get_lines(void)
+const struct service_lines *takt_console_line_get_lines(void)
 {
     return NULL;
 }
 
-void console_line_open(struct embedded *embedded)
+void takt_console_line_open(struct embedded *embedded)
 {
     (void)embedded;
 }
 
-void console_line_serve(void)
+void takt_console_line_serve(void)
 {
 }

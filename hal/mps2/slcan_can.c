@@ -13,18 +13,18 @@
 #define FUNCTION   0x780U
 #define NODE_MASK  0x07FU
 
-void slcan_can_open(struct slcan_can *can, struct uart *line)
+void takt_slcan_can_open(struct slcan_can *can, struct uart *line)
 {
     memset(can, 0, sizeof *can);
     can->line = line;
 }
 
-bool slcan_can_announce(struct slcan_can *can)
+bool takt_slcan_can_announce(struct slcan_can *can)
 {
     static const char open[] = "\rC\rS8\rO\r";
 
     if (can->written == 0)
-        (void)uart_send(can->line, open, sizeof open - 1);
+        (void)takt_uart_send(can->line, open, sizeof open - 1);
     return can->written != 0;
 }
 
@@ -59,7 +59,7 @@ static bool send(void *context, const struct can_frame *frame)
         can->cycle = (uint8_t)(can->cycle % UINT8_MAX + 1U);
     if ((frame->id & FUNCTION) == REQUEST_ID)
         can->asked[frame->id & NODE_MASK] = true;
-    return uart_send(can->line, text, at);
+    return takt_uart_send(can->line, text, at);
 }
 
 static bool receive(void *context, struct can_frame *frame)
@@ -73,12 +73,12 @@ static bool receive(void *context, struct can_frame *frame)
     return true;
 }
 
-struct can_port slcan_can_get_port(struct slcan_can *can)
+struct can_port takt_slcan_can_get_port(struct slcan_can *can)
 {
     return (struct can_port){.send = send, .receive = receive, .context = can};
 }
 
-/* So many hexadecimal digits; -1: they are none. */
+/* Reads count hexadecimal digits; -1: they are none. */
 static int32_t read_digits(const char *text, unsigned count)
 {
     int32_t value = 0;
@@ -136,7 +136,7 @@ static void take_line(struct slcan_can *can)
     note_answer(can, &frame);
 }
 
-void slcan_can_take(void *context, uint8_t byte)
+void takt_slcan_can_take(void *context, uint8_t byte)
 {
     struct slcan_can *can = context;
 
@@ -148,19 +148,19 @@ void slcan_can_take(void *context, uint8_t byte)
     }
 }
 
-bool slcan_can_is_in_step(const struct slcan_can *can, uint8_t node)
+bool takt_slcan_can_is_in_step(const struct slcan_can *can, uint8_t node)
 {
     return can->answered[node & NODE_MASK] != 0;
 }
 
-bool slcan_can_has_answered(const struct slcan_can *can, uint8_t node)
+bool takt_slcan_can_has_answered(const struct slcan_can *can, uint8_t node)
 {
     const uint8_t answered = can->answered[node & NODE_MASK];
 
     return !can->asked[node & NODE_MASK] && (answered == 0 || answered == can->cycle);
 }
 
-void slcan_can_give_up(struct slcan_can *can, uint8_t node)
+void takt_slcan_can_give_up(struct slcan_can *can, uint8_t node)
 {
     can->answered[node & NODE_MASK] = 0;
     can->asked[node & NODE_MASK] = false;

@@ -32,24 +32,24 @@ struct slcan_can {
     volatile bool lost; /* a frame found no room */
 };
 
-/* line carries it; its bytes go to slcan_can_take. */
-void slcan_can_open(struct slcan_can *can, struct uart *line);
+/* line carries it; its bytes go to takt_slcan_can_take. */
+void takt_slcan_can_open(struct slcan_can *can, struct uart *line);
 
 /* Opens the channel of the adapter at the other end, if there is one. False: no frame has come yet, so it may not have
  * heard. */
-bool slcan_can_announce(struct slcan_can *can);
+bool takt_slcan_can_announce(struct slcan_can *can);
 
 /* A byte has come: of struct uart. */
-void slcan_can_take(void *can, uint8_t byte);
+void takt_slcan_can_take(void *can, uint8_t byte);
 
-struct can_port slcan_can_get_port(struct slcan_can *can);
+struct can_port takt_slcan_can_get_port(struct slcan_can *can);
 
 /* Has this node answered any SYNC? */
-bool slcan_can_is_in_step(const struct slcan_can *can, uint8_t node);
+bool takt_slcan_can_is_in_step(const struct slcan_can *can, uint8_t node);
 /* Has it answered all it has been asked: an SDO, and once it is in step the last SYNC? */
-bool slcan_can_has_answered(const struct slcan_can *can, uint8_t node);
+bool takt_slcan_can_has_answered(const struct slcan_can *can, uint8_t node);
 
 /* A node is not waited for any more until it answers again. */
-void slcan_can_give_up(struct slcan_can *can, uint8_t node);
+void takt_slcan_can_give_up(struct slcan_can *can, uint8_t node);
 
 #endif

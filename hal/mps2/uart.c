@@ -33,8 +33,8 @@ static unsigned in_interrupt(unsigned number)
     return first[number];
 }
 
-void uart_open(struct uart *uart, unsigned number, void (*take)(void *context, uint8_t byte),
-               void *context)
+void takt_uart_open(struct uart *uart, unsigned number, void (*take)(void *context, uint8_t byte),
+                    void *context)
 {
     memset(uart, 0, sizeof *uart);
     uart->number = number;
@@ -58,7 +58,7 @@ static void feed(struct uart *uart)
     }
 }
 
-bool uart_send(struct uart *uart, const void *bytes, size_t size)
+bool takt_uart_send(struct uart *uart, const void *bytes, size_t size)
 {
     const uint8_t *from = bytes;
     const uint32_t written = uart->written;
@@ -72,7 +72,7 @@ bool uart_send(struct uart *uart, const void *bytes, size_t size)
     return true;
 }
 
-bool uart_is_idle(const struct uart *uart)
+bool takt_uart_is_idle(const struct uart *uart)
 {
     return uart->sent == uart->written;
 }
@@ -96,42 +96,42 @@ static void send(unsigned number)
     feed(uarts[number]);
 }
 
-void uart_0_receive(void)
+void takt_uart_0_receive(void)
 {
     receive(0);
 }
 
-void uart_0_send(void)
+void takt_uart_0_send(void)
 {
     send(0);
 }
 
-void uart_1_receive(void)
+void takt_uart_1_receive(void)
 {
     receive(1);
 }
 
-void uart_1_send(void)
+void takt_uart_1_send(void)
 {
     send(1);
 }
 
-void uart_2_receive(void)
+void takt_uart_2_receive(void)
 {
     receive(2);
 }
 
-void uart_2_send(void)
+void takt_uart_2_send(void)
 {
     send(2);
 }
 
-void uart_3_receive(void)
+void takt_uart_3_receive(void)
 {
     receive(3);
 }
 
-void uart_3_send(void)
+void takt_uart_3_send(void)
 {
     send(3);
 }

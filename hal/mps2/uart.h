@@ -24,13 +24,13 @@ struct uart {
 };
 
 /* It must not be moved. */
-void uart_open(struct uart *uart, unsigned number, void (*take)(void *context, uint8_t byte),
-               void *context);
+void takt_uart_open(struct uart *uart, unsigned number, void (*take)(void *context, uint8_t byte),
+                    void *context);
 
 /* Queues all of the bytes or, for want of room, none: false. From one level of interrupts alone. */
-bool uart_send(struct uart *uart, const void *bytes, size_t size);
+bool takt_uart_send(struct uart *uart, const void *bytes, size_t size);
 
 /* Everything queued has gone. */
-bool uart_is_idle(const struct uart *uart);
+bool takt_uart_is_idle(const struct uart *uart);
 
 #endif

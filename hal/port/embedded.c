@@ -24,7 +24,7 @@ static void look_at_refusal(const struct embedded *e, struct panel_snapshot *sna
     snapshot->value[REGISTER_STATE] = PANEL_ALARM;
     snapshot->value[REGISTER_ALARM] = PANEL_ALARM_INTERNAL;
     snapshot->value[REGISTER_ALARM_LINE] = 0;
-    (void)diagnostic_text(&e->refusal, snapshot->alarm_text);
+    (void)takt_diagnostic_text(&e->refusal, snapshot->alarm_text);
 }
 
 /* A snapshot into which a cycle has fallen may be half old: it is taken again. A cycle lasts longer than a look. */
@@ -35,7 +35,7 @@ static void look(void *context, struct panel_snapshot *snapshot)
 
     do {
         before = e->cycles;
-        service_look(&e->service, snapshot);
+        takt_service_look(&e->service, snapshot);
     } while (before != e->cycles);
     if (e->refused)
         look_at_refusal(e, snapshot);
@@ -49,7 +49,7 @@ static enum panel_verdict order(void *context, const struct panel_order *order)
     if (e->refused)
         return PANEL_WRONG_STATE;
     lock(e);
-    verdict = service_order(&e->service, order);
+    verdict = takt_service_order(&e->service, order);
     unlock(e);
     return verdict;
 }
@@ -59,7 +59,7 @@ static void hear(void *context)
     struct embedded *e = context;
 
     lock(e);
-    service_alive(&e->service);
+    takt_service_alive(&e->service);
     unlock(e);
 }
 
@@ -78,54 +78,54 @@ static void init_service(struct embedded *e)
         .parameters = &e->config.core->parameters,
         .correction = config->correction,
         .dcf = config->dcf,
-        .programs = {text_queue_open, text_queue_adopt, &e->config.core->queue},
-        .plans = plan_queue_get_plans(&e->config.core->plan),
+        .programs = {takt_text_queue_open, takt_text_queue_adopt, &e->config.core->queue},
+        .plans = takt_plan_queue_get_plans(&e->config.core->plan),
     };
 
     if (config->lines != NULL)
         service.lines = *config->lines;
-    parameters_clear(&e->config.core->parameters);
-    service_init(&e->service, &service);
+    takt_parameters_clear(&e->config.core->parameters);
+    takt_service_init(&e->service, &service);
 }
 
 static void init_panel(struct embedded *e)
 {
     const struct panel_config panel = {
         .port = {.look = look, .order = order, .alive = hear, .context = e},
-        .store = text_queue_get_store(&e->config.core->queue),
+        .store = takt_text_queue_get_store(&e->config.core->queue),
         .settings = e->config.settings,
-        .plans = plan_queue_get_store(&e->config.core->plan),
+        .plans = takt_plan_queue_get_store(&e->config.core->plan),
         .password = e->config.password,
     };
     struct modbus_map map;
 
-    panel_init(&e->config.core->panel, &panel);
-    panel_client_enter(&e->config.core->client, &e->config.core->panel);
-    map = panel_client_map(&e->config.core->client);
-    modbus_rtu_init(&e->config.core->rtu, &map, e->config.unit, e->config.gap_us);
+    takt_panel_init(&e->config.core->panel, &panel);
+    takt_panel_client_enter(&e->config.core->client, &e->config.core->panel);
+    map = takt_panel_client_map(&e->config.core->client);
+    takt_modbus_rtu_init(&e->config.core->rtu, &map, e->config.unit, e->config.gap_us);
 }
 
-void embedded_init(struct embedded *e, const struct embedded_config *config)
+void takt_embedded_init(struct embedded *e, const struct embedded_config *config)
 {
     memset(e, 0, sizeof *e);
     e->config = *config;
     e->cycle_min_ns = UINT32_MAX;
     e->logged_state = PANEL_STATES;
-    line_ring_open(&e->received, config->gap_us);
-    text_queue_init(&e->config.core->queue);
-    plan_queue_init(&e->config.core->plan, &e->service);
+    takt_line_ring_open(&e->received, config->gap_us);
+    takt_text_queue_init(&e->config.core->queue);
+    takt_plan_queue_init(&e->config.core->plan, &e->service);
     init_service(e);
     init_panel(e);
-    embedded_log_line(e, config->name);
+    takt_embedded_log_line(e, config->name);
 }
 
-void embedded_refuse(struct embedded *e, const struct diagnostic *why)
+void takt_embedded_refuse(struct embedded *e, const struct diagnostic *why)
 {
     if (e->refused)
         return;
     e->refusal = *why;
     e->refused = true;
-    embedded_log_alarm(e, why);
+    takt_embedded_log_alarm(e, why);
 }
 
 /* -- the control cycle -- */
@@ -139,29 +139,29 @@ static void measure(struct embedded *e, uint32_t duration_ns)
     e->cycle_sum_ns += duration_ns;
 }
 
-void embedded_cycle(struct embedded *e, const struct inputs *inputs, bool late)
+void takt_embedded_cycle(struct embedded *e, const struct inputs *inputs, bool late)
 {
     const struct embedded_port *port = &e->config.port;
     const uint32_t start_ns = port->now_ns(port->context);
 
     if (e->refused)
         return;
-    service_cycle(&e->service, inputs);
+    takt_service_cycle(&e->service, inputs);
     e->cycles++;
     e->overruns += late;
     measure(e, port->now_ns(port->context) - start_ns);
 }
 
-struct outputs embedded_get_outputs(const struct embedded *e)
+struct outputs takt_embedded_get_outputs(const struct embedded *e)
 {
-    return service_get_outputs(&e->service);
+    return takt_service_get_outputs(&e->service);
 }
 
 /* -- the background -- */
 
-void embedded_take_byte(struct embedded *e, uint8_t byte, uint32_t now_us)
+void takt_embedded_take_byte(struct embedded *e, uint8_t byte, uint32_t now_us)
 {
-    (void)line_ring_put(&e->received, byte, now_us);
+    (void)takt_line_ring_put(&e->received, byte, now_us);
 }
 
 /* Nothing of the service's health is read by the cycle. */
@@ -177,7 +177,7 @@ static void update_health(struct embedded *e)
         .overruns = e->overruns,
     };
     unlock(e);
-    service_set_health(&e->service, &health);
+    takt_service_set_health(&e->service, &health);
 }
 
 /* The line's own time: that of its silences. */
@@ -201,22 +201,22 @@ static void serve_line(struct embedded *e)
     uint8_t reply[MODBUS_RTU_MAX];
     bool is_silent;
 
-    while (!line_ring_is_empty(&e->received)) {
-        const uint8_t byte = line_ring_take(&e->received, &is_silent);
+    while (!takt_line_ring_is_empty(&e->received)) {
+        const uint8_t byte = takt_line_ring_take(&e->received, &is_silent);
 
-        text_queue_use(&e->config.core->queue, e->service.job != SERVICE_NOTHING);
-        send_reply(e, reply, modbus_rtu_take(rtu, byte, pass_silence(e, is_silent), reply));
+        takt_text_queue_use(&e->config.core->queue, e->service.job != SERVICE_NOTHING);
+        send_reply(e, reply, takt_modbus_rtu_take(rtu, byte, pass_silence(e, is_silent), reply));
     }
-    is_silent = line_ring_is_silent(&e->received, port->now_us(port->context));
-    send_reply(e, reply, modbus_rtu_idle(rtu, pass_silence(e, is_silent), reply));
+    is_silent = takt_line_ring_is_silent(&e->received, port->now_us(port->context));
+    send_reply(e, reply, takt_modbus_rtu_idle(rtu, pass_silence(e, is_silent), reply));
 }
 
-void embedded_background(struct embedded *e)
+void takt_embedded_background(struct embedded *e)
 {
     update_health(e);
     serve_line(e);
     if (e->refused)
         return;
-    service_background(&e->service);
-    embedded_log_changes(e);
+    takt_service_background(&e->service);
+    takt_embedded_log_changes(e);
 }

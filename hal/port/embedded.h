@@ -3,11 +3,11 @@
  * the program it is being sent, and a log. A port adds a timer, a CAN controller, two serial lines and a memory for
  * settings, and calls
  *
- *     embedded_cycle        from the interrupt of the control cycle
- *     embedded_take_byte    from the interrupt of the panel's line
- *     embedded_background   from main, for ever
+ *     takt_embedded_cycle        from the interrupt of the control cycle
+ *     takt_embedded_take_byte    from the interrupt of the panel's line
+ *     takt_embedded_background   from main, for ever
  *
- * embedded_cycle may interrupt the other two, embedded_take_byte may interrupt all. Nothing here waits.
+ * takt_embedded_cycle may interrupt the other two, takt_embedded_take_byte may interrupt all. Nothing here waits.
  */
 #ifndef TAKT_PORT_EMBEDDED_H
 #define TAKT_PORT_EMBEDDED_H
@@ -69,7 +69,7 @@ struct embedded_config {
         *lines;                  /* copied: of a console (port/embedded_console.h); NULL: none */
     struct panel_store settings; /* where settings are brought to; begin is NULL: nowhere */
     uint8_t unit;                /* of the panel's line, 1 ... 247 */
-    uint32_t gap_us;             /* that ends a frame on it: modbus_rtu_gap_us, or more */
+    uint32_t gap_us;             /* that ends a frame on it: takt_modbus_rtu_gap_us, or more */
     uint32_t password;           /* of the panel; 0: none is asked for */
     const char *name;            /* of the image, for the log */
 };
@@ -91,25 +91,25 @@ struct embedded {
     uint16_t logged_runs;
 };
 
-/* Everything is ready and at rest; the first embedded_cycle sends the first frames. */
-void embedded_init(struct embedded *e, const struct embedded_config *config);
+/* Everything is ready and at rest; the first takt_embedded_cycle sends the first frames. */
+void takt_embedded_init(struct embedded *e, const struct embedded_config *config);
 
 /*
  * The machine must not run, and why: the image is damaged, its settings are, there is no CAN controller. The panel and
  * the log say so; the control cycle does nothing from then on, so no drive hears anything. Uploads are still taken.
  */
-void embedded_refuse(struct embedded *e, const struct diagnostic *why);
+void takt_embedded_refuse(struct embedded *e, const struct diagnostic *why);
 
 /* One control cycle. late: the one before has not ended in time. */
-void embedded_cycle(struct embedded *e, const struct inputs *inputs, bool late);
+void takt_embedded_cycle(struct embedded *e, const struct inputs *inputs, bool late);
 
 /* What the outputs of the machine are to be after the last cycle. */
-struct outputs embedded_get_outputs(const struct embedded *e);
+struct outputs takt_embedded_get_outputs(const struct embedded *e);
 
 /* A byte has come on the panel's line. */
-void embedded_take_byte(struct embedded *e, uint8_t byte, uint32_t now_us);
+void takt_embedded_take_byte(struct embedded *e, uint8_t byte, uint32_t now_us);
 
 /* Reads and plans ahead, answers the panel, writes the log. Then the processor may sleep until the next interrupt. */
-void embedded_background(struct embedded *e);
+void takt_embedded_background(struct embedded *e);
 
 #endif

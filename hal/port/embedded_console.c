@@ -13,24 +13,24 @@ static void open_lines(void *context, struct source *source)
 {
     struct embedded_console *c = context;
 
-    lines_open(&c->lines, source);
+    takt_lines_open(&c->lines, source);
 }
 
 static void refuse_line(void *context, const struct diagnostic *why)
 {
     struct embedded_console *c = context;
 
-    lines_refuse(&c->lines, (uint8_t)console_error_of(why->code), why);
+    takt_lines_refuse(&c->lines, (uint8_t)takt_console_error_of(why->code), why);
 }
 
 static void end_lines(void *context, enum takt_error why)
 {
     struct embedded_console *c = context;
 
-    lines_end(&c->lines, why == TAKT_OK ? CONSOLE_OK : CONSOLE_LOCKED, why);
+    takt_lines_end(&c->lines, why == TAKT_OK ? CONSOLE_OK : CONSOLE_LOCKED, why);
 }
 
-struct service_lines embedded_console_get_lines(struct embedded_console *c)
+struct service_lines takt_embedded_console_get_lines(struct embedded_console *c)
 {
     return (struct service_lines){open_lines, refuse_line, end_lines, c};
 }
@@ -49,14 +49,14 @@ static enum panel_refusal order(void *context, const struct panel_order *wanted)
 {
     struct embedded_console *c = context;
 
-    return panel_client_order(&c->client, wanted);
+    return takt_panel_client_order(&c->client, wanted);
 }
 
 static enum panel_refusal unlock(void *context, uint32_t password)
 {
     struct embedded_console *c = context;
 
-    return panel_client_unlock(&c->client, password);
+    return takt_panel_client_unlock(&c->client, password);
 }
 
 static bool tell(void *context, enum console_fact fact, double value[AXIS_COUNT])
@@ -65,7 +65,7 @@ static bool tell(void *context, enum console_fact fact, double value[AXIS_COUNT]
     const struct embedded_port *port = &c->config.embedded->config.port;
 
     port->lock(port->context);
-    service_tell(&c->config.embedded->service, fact, value);
+    takt_service_tell(&c->config.embedded->service, fact, value);
     port->unlock(port->context);
     return true;
 }
@@ -79,7 +79,8 @@ static void write_answer(void *context, const char *text, size_t length)
 
 /* -- the line -- */
 
-void embedded_console_init(struct embedded_console *c, const struct embedded_console_config *config)
+void takt_embedded_console_init(struct embedded_console *c,
+                                const struct embedded_console_config *config)
 {
     const struct console_config console = {
         .port = {look, order, unlock, tell, NULL, write_answer, c},
@@ -90,27 +91,27 @@ void embedded_console_init(struct embedded_console *c, const struct embedded_con
 
     memset(c, 0, sizeof *c);
     c->config = *config;
-    panel_client_enter(&c->client, &config->embedded->config.core->panel);
-    line_ring_open(&c->received, NO_GAP_US);
-    lines_init(&c->lines, c->text, sizeof c->text);
-    console_init(&c->console, &console);
-    console_enter(&c->console);
+    takt_panel_client_enter(&c->client, &config->embedded->config.core->panel);
+    takt_line_ring_open(&c->received, NO_GAP_US);
+    takt_lines_init(&c->lines, c->text, sizeof c->text);
+    takt_console_init(&c->console, &console);
+    takt_console_enter(&c->console);
 }
 
-void embedded_console_take_byte(struct embedded_console *c, uint8_t byte)
+void takt_embedded_console_take_byte(struct embedded_console *c, uint8_t byte)
 {
-    c->has_lost = c->has_lost || !line_ring_put(&c->received, byte, 0);
+    c->has_lost = c->has_lost || !takt_line_ring_put(&c->received, byte, 0);
 }
 
-void embedded_console_background(struct embedded_console *c)
+void takt_embedded_console_background(struct embedded_console *c)
 {
     bool is_silent;
 
-    if (c->has_lost && line_ring_is_empty(&c->received)) {
-        lines_spoil(&c->lines);
+    if (c->has_lost && takt_line_ring_is_empty(&c->received)) {
+        takt_lines_spoil(&c->lines);
         c->has_lost = false;
     }
-    while (!line_ring_is_empty(&c->received) && console_has_room(&c->console))
-        console_take(&c->console, line_ring_take(&c->received, &is_silent));
-    console_step(&c->console);
+    while (!takt_line_ring_is_empty(&c->received) && takt_console_has_room(&c->console))
+        takt_console_take(&c->console, takt_line_ring_take(&c->received, &is_silent));
+    takt_console_step(&c->console);
 }

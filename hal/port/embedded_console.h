@@ -2,8 +2,8 @@
  * Grbl's interface on a serial line of an image, beside the panel: CNCjs, UGS or a script at its other end stream lines into
  * the program that runs. A port that has a line and the memory for it gives embedded_config the lines of a console, and calls
  *
- *     embedded_console_take_byte     from the interrupt of the line
- *     embedded_console_background    from main, after embedded_background
+ *     takt_embedded_console_take_byte     from the interrupt of the line
+ *     takt_embedded_console_background    from main, after takt_embedded_background
  *
  * There is no check mode ($C): it would need a second program reader.
  */
@@ -39,15 +39,15 @@ struct embedded_console {
     uint8_t text[EMBEDDED_CONSOLE_TEXT];
 };
 
-/* For embedded_config: before embedded_init, which copies them. */
-struct service_lines embedded_console_get_lines(struct embedded_console *c);
+/* For embedded_config: before takt_embedded_init, which copies them. */
+struct service_lines takt_embedded_console_get_lines(struct embedded_console *c);
 
-/* After embedded_init; the sender is welcomed. */
-void embedded_console_init(struct embedded_console *c,
-                           const struct embedded_console_config *config);
+/* After takt_embedded_init; the sender is welcomed. */
+void takt_embedded_console_init(struct embedded_console *c,
+                                const struct embedded_console_config *config);
 
-void embedded_console_take_byte(struct embedded_console *c, uint8_t byte);
+void takt_embedded_console_take_byte(struct embedded_console *c, uint8_t byte);
 
-void embedded_console_background(struct embedded_console *c);
+void takt_embedded_console_background(struct embedded_console *c);
 
 #endif

@@ -7,7 +7,7 @@ static const char *const state_names[PANEL_STATES] = {
 
 static const char *const outcome_names[] = {"none", "completed", "aborted", "failed"};
 
-void embedded_log_line(const struct embedded *e, const char *text)
+void takt_embedded_log_line(const struct embedded *e, const char *text)
 {
     e->config.port.log(e->config.port.context, text);
 }
@@ -25,14 +25,14 @@ static void log_pair(const struct embedded *e, const char *word, const char *tex
     char line[EMBEDDED_LOG_MAX];
 
     (void)append(line, append(line, 0, word), text);
-    embedded_log_line(e, line);
+    takt_embedded_log_line(e, line);
 }
 
-void embedded_log_alarm(const struct embedded *e, const struct diagnostic *alarm)
+void takt_embedded_log_alarm(const struct embedded *e, const struct diagnostic *alarm)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    (void)diagnostic_text(alarm, text);
+    (void)takt_diagnostic_text(alarm, text);
     log_pair(e, "alarm: ", text);
 }
 
@@ -49,18 +49,18 @@ static void log_outcome(const struct embedded *e)
     digest[16] = '\0';
     at = append(line, at, ", setpoints ");
     (void)append(line, at, digest);
-    embedded_log_line(e, line);
+    takt_embedded_log_line(e, line);
 }
 
-void embedded_log_changes(struct embedded *e)
+void takt_embedded_log_changes(struct embedded *e)
 {
-    const enum panel_state state = service_get_state(&e->service);
+    const enum panel_state state = takt_service_get_state(&e->service);
 
     if (e->service.runs != e->logged_runs)
         log_outcome(e);
     e->logged_runs = e->service.runs;
     if (e->service.alarm != e->logged_alarm && e->service.alarm != PANEL_ALARM_NONE)
-        embedded_log_alarm(e, &e->service.alarm_text);
+        takt_embedded_log_alarm(e, &e->service.alarm_text);
     e->logged_alarm = e->service.alarm;
     if (state != e->logged_state)
         log_pair(e, "state: ", state_names[state]);

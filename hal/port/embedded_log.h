@@ -6,11 +6,11 @@
 
 #include "port/embedded.h"
 
-void embedded_log_line(const struct embedded *e, const char *text);
+void takt_embedded_log_line(const struct embedded *e, const char *text);
 
-void embedded_log_alarm(const struct embedded *e, const struct diagnostic *alarm);
+void takt_embedded_log_alarm(const struct embedded *e, const struct diagnostic *alarm);
 
 /* What has changed since the last call. */
-void embedded_log_changes(struct embedded *e);
+void takt_embedded_log_changes(struct embedded *e);
 
 #endif

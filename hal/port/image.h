@@ -7,6 +7,6 @@
 #include "base/error.h"
 
 /* False: bits have been lost; *why says so. Takes about 6 cycles of the processor a byte. */
-bool image_is_sound(struct diagnostic *why);
+bool takt_image_is_sound(struct diagnostic *why);
 
 #endif

@@ -4,7 +4,7 @@
 
 #define BITS 8U /* of a byte of after_silence */
 
-void line_ring_open(struct line_ring *ring, uint32_t gap_us)
+void takt_line_ring_open(struct line_ring *ring, uint32_t gap_us)
 {
     memset(ring, 0, sizeof *ring);
     ring->gap_us = gap_us;
@@ -27,7 +27,7 @@ static bool has_been_silent(const struct line_ring *ring, uint32_t now_us)
     return quiet_us <= UINT32_MAX / 2U && quiet_us >= ring->gap_us;
 }
 
-bool line_ring_put(struct line_ring *ring, uint8_t byte, uint32_t now_us)
+bool takt_line_ring_put(struct line_ring *ring, uint8_t byte, uint32_t now_us)
 {
     const uint32_t at = ring->written;
     const uint32_t place = at % LINE_RING_MAX;
@@ -44,12 +44,12 @@ bool line_ring_put(struct line_ring *ring, uint8_t byte, uint32_t now_us)
     return true;
 }
 
-bool line_ring_is_empty(const struct line_ring *ring)
+bool takt_line_ring_is_empty(const struct line_ring *ring)
 {
     return ring->taken == ring->written;
 }
 
-uint8_t line_ring_take(struct line_ring *ring, bool *after_silence)
+uint8_t takt_line_ring_take(struct line_ring *ring, bool *after_silence)
 {
     const uint32_t at = ring->taken;
     const uint32_t place = at % LINE_RING_MAX;
@@ -61,7 +61,7 @@ uint8_t line_ring_take(struct line_ring *ring, bool *after_silence)
     return byte;
 }
 
-bool line_ring_is_silent(const struct line_ring *ring, uint32_t now_us)
+bool takt_line_ring_is_silent(const struct line_ring *ring, uint32_t now_us)
 {
-    return line_ring_is_empty(ring) && has_been_silent(ring, now_us);
+    return takt_line_ring_is_empty(ring) && has_been_silent(ring, now_us);
 }

@@ -21,17 +21,17 @@ struct line_ring {
     volatile uint8_t after_silence[LINE_RING_MAX / 8]; /* a bit of each byte */
 };
 
-void line_ring_open(struct line_ring *ring, uint32_t gap_us);
+void takt_line_ring_open(struct line_ring *ring, uint32_t gap_us);
 
 /* False: no room, the byte is lost. */
-bool line_ring_put(struct line_ring *ring, uint8_t byte, uint32_t now_us);
+bool takt_line_ring_put(struct line_ring *ring, uint8_t byte, uint32_t now_us);
 
-bool line_ring_is_empty(const struct line_ring *ring);
+bool takt_line_ring_is_empty(const struct line_ring *ring);
 
 /* The oldest byte of a ring that is not empty, and whether the line was silent before it. */
-uint8_t line_ring_take(struct line_ring *ring, bool *after_silence);
+uint8_t takt_line_ring_take(struct line_ring *ring, bool *after_silence);
 
 /* All has been taken, and the line is silent. */
-bool line_ring_is_silent(const struct line_ring *ring, uint32_t now_us);
+bool takt_line_ring_is_silent(const struct line_ring *ring, uint32_t now_us);
 
 #endif

@@ -59,11 +59,11 @@ def main():
     texts, pairs = pack(read_texts(sys.argv[1]))
     with open(sys.argv[2], "w", encoding="ascii") as out:
         out.write('/* Made by hal/port/pack_texts.py. */\n#include "base/error_text.h"\n\n')
-        out.write("const uint8_t error_text_pairs[][2] = {\n")
+        out.write("const uint8_t takt_error_text_pairs[][2] = {\n")
         out.writelines(f"    {{{first}, {second}}},\n" for first, second in pairs or [(0, 0)])
         out.write("};\n\nstatic const uint8_t texts[] = {\n")
         out.writelines("    " + "".join(f"{byte}, " for byte in text) + "0,\n" for text in texts)
-        out.write("};\n\nconst uint8_t *error_text_find(unsigned index)\n{\n    const uint8_t *text = texts;\n"
+        out.write("};\n\nconst uint8_t *takt_error_text_find(unsigned index)\n{\n    const uint8_t *text = texts;\n"
                   "    for (; index > 0; text++)\n        index -= *text == 0;\n    return text;\n}\n")
 
 

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
-void plan_queue_init(struct plan_queue *q, const struct service *service)
+void takt_plan_queue_init(struct plan_queue *q, const struct service *service)
 {
     memset(q, 0, sizeof *q);
     q->service = service;
@@ -35,9 +35,9 @@ static uint32_t room(void *context)
 static bool check(struct plan_queue *q)
 {
     struct replay_header header;
-    const bool fits = replay_fit_read(&header, q->header, &q->why) &&
-                      replay_fit_machine(&header, &q->fit, &q->why) &&
-                      replay_fit_text(&header, &q->fit, &q->why);
+    const bool fits = takt_replay_fit_read(&header, q->header, &q->why) &&
+                      takt_replay_fit_machine(&header, &q->fit, &q->why) &&
+                      takt_replay_fit_text(&header, &q->fit, &q->why);
 
     atomic_store(&q->state, fits ? PLAN_QUEUE_FITS : PLAN_QUEUE_REFUSED);
     return fits;
@@ -88,10 +88,10 @@ static void why(void *context, char *text)
 
     static_assert(DIAGNOSTIC_TEXT_MAX <= PANEL_ALARM_TEXT_MAX, "there is room for it");
     if (q->why.code != TAKT_OK)
-        (void)diagnostic_text(&q->why, text);
+        (void)takt_diagnostic_text(&q->why, text);
 }
 
-struct panel_store plan_queue_get_store(struct plan_queue *q)
+struct panel_store takt_plan_queue_get_store(struct plan_queue *q)
 {
     return (struct panel_store){.write = bring,
                                 .begin_stream = begin_stream,
@@ -159,13 +159,13 @@ static enum service_plan open(void *context, struct replay_source *source)
     return SERVICE_PLAN_UNFIT;
 }
 
-struct service_plans plan_queue_get_plans(struct plan_queue *q)
+struct service_plans takt_plan_queue_get_plans(struct plan_queue *q)
 {
     return (struct service_plans){
         .announce = announce, .open = open, .forget = forget, .context = q};
 }
 
-void *plan_queue_lend(struct plan_queue *q)
+void *takt_plan_queue_lend(struct plan_queue *q)
 {
     forget(q);
     atomic_store(&q->read, atomic_load(&q->written));

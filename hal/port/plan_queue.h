@@ -45,15 +45,15 @@ struct plan_queue {
     struct diagnostic why; /* it was refused; TAKT_OK: it was not */
 };
 
-void plan_queue_init(struct plan_queue *q, const struct service *service);
+void takt_plan_queue_init(struct plan_queue *q, const struct service *service);
 
 /* What the panel brings its bytes to. */
-struct panel_store plan_queue_get_store(struct plan_queue *q);
+struct panel_store takt_plan_queue_get_store(struct plan_queue *q);
 
 /* Its PLAN_QUEUE_MAX bytes, at a multiple of 8, for something else while no program runs; a plan that waits is given up. */
-void *plan_queue_lend(struct plan_queue *q);
+void *takt_plan_queue_lend(struct plan_queue *q);
 
 /* What the service starts. */
-struct service_plans plan_queue_get_plans(struct plan_queue *q);
+struct service_plans takt_plan_queue_get_plans(struct plan_queue *q);
 
 #endif

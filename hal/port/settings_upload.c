@@ -13,7 +13,7 @@ static void tell(const struct settings_upload *u, char text[DIAGNOSTIC_TEXT_MAX]
     if (u->why != NULL)
         memcpy(text, u->why, strlen(u->why) + 1);
     else
-        (void)diagnostic_text(&u->wrong, text);
+        (void)takt_diagnostic_text(&u->wrong, text);
 }
 
 static bool log_refusal(const struct settings_upload *u)
@@ -43,24 +43,25 @@ static bool begin(void *context, uint32_t size)
 
     if (!may_load(u))
         return refuse(u, DRIVES_ARE_ON);
-    if (size > store_room(u->store))
+    if (size > takt_store_room(u->store))
         return refuse(u, "these settings are larger than the memory for them");
-    return store_begin(u->store, size) || refuse(u, "the memory for settings cannot be erased");
+    return takt_store_begin(u->store, size) ||
+           refuse(u, "the memory for settings cannot be erased");
 }
 
-/* Chunks come in order: see panel_upload_take. */
+/* Chunks come in order: see takt_panel_upload_take. */
 static bool take(void *context, uint32_t offset, const uint8_t *data, size_t length)
 {
     struct settings_upload *u = context;
 
     (void)offset;
-    return may_load(u) && store_write(u->store, data, length);
+    return may_load(u) && takt_store_write(u->store, data, length);
 }
 
 static bool prepare(void *context)
 {
     struct settings_upload *u = context;
-    const uint8_t *bytes = store_look(u->store);
+    const uint8_t *bytes = takt_store_look(u->store);
     struct machine machine;
 
     if (!may_load(u))
@@ -68,8 +69,8 @@ static bool prepare(void *context)
     if (bytes == NULL)
         return refuse(u, "the settings are not complete");
     u->why = NULL;
-    return settings_read(bytes, u->store->coming, &machine, u->port.borrow(u->port.context), NULL,
-                         &u->wrong) ||
+    return takt_settings_read(bytes, u->store->coming, &machine, u->port.borrow(u->port.context),
+                              NULL, &u->wrong) ||
            log_refusal(u);
 }
 
@@ -77,7 +78,7 @@ static bool place(void *context)
 {
     struct settings_upload *u = context;
 
-    if (!store_commit(u->store))
+    if (!takt_store_commit(u->store))
         return refuse(u, "the memory for settings does not keep them");
     u->port.log(u->port.context, STORED);
     return true;
@@ -88,8 +89,8 @@ static void why(void *context, char *text)
     tell(context, text);
 }
 
-struct panel_store settings_upload_open(struct settings_upload *upload, struct store *store,
-                                        const struct settings_upload_port *port)
+struct panel_store takt_settings_upload_open(struct settings_upload *upload, struct store *store,
+                                             const struct settings_upload_port *port)
 {
     memset(upload, 0, sizeof *upload);
     upload->why = "";

@@ -30,7 +30,7 @@ struct settings_upload {
 };
 
 /* For struct panel_config. store: opened; must outlive it. */
-struct panel_store settings_upload_open(struct settings_upload *upload, struct store *store,
-                                        const struct settings_upload_port *port);
+struct panel_store takt_settings_upload_open(struct settings_upload *upload, struct store *store,
+                                             const struct settings_upload_port *port);
 
 #endif

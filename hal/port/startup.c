@@ -16,11 +16,11 @@ extern uint8_t image_core_begin[], image_core_end[];
 /* What a port does not replace. */
 #define WEAK __attribute__((weak))
 
-WEAK void port_begin(void)
+WEAK void takt_port_begin(void)
 {
 }
 
-WEAK void port_fault(void)
+WEAK void takt_port_fault(void)
 {
     for (;;) {
     }
@@ -35,29 +35,29 @@ WEAK _Noreturn void __assert_func(const char *file, int line, const char *functi
     (void)function;
     (void)text;
     cortex_disable_all();
-    port_fault();
+    takt_port_fault();
     for (;;) {
     }
 }
 
-WEAK void port_nmi(void)
+WEAK void takt_port_nmi(void)
 {
-    port_fault();
+    takt_port_fault();
 }
 
-WEAK void port_supervisor_call(void)
+WEAK void takt_port_supervisor_call(void)
 {
-    port_fault();
+    takt_port_fault();
 }
 
-WEAK void port_pending_call(void)
+WEAK void takt_port_pending_call(void)
 {
-    port_fault();
+    takt_port_fault();
 }
 
-WEAK void port_systick(void)
+WEAK void takt_port_systick(void)
 {
-    port_fault();
+    takt_port_fault();
 }
 
 /* The core's own vectors (ARMv7-M, B1.5.3); those of the chip follow. */
@@ -68,8 +68,9 @@ struct vectors {
 
 __attribute__((section(".vectors"), used)) static const struct vectors vectors = {
     .stack = image_stack_top,
-    .vector = {port_reset, port_nmi, port_fault, port_fault, port_fault, port_fault, NULL, NULL,
-               NULL, NULL, port_supervisor_call, port_fault, NULL, port_pending_call, port_systick},
+    .vector = {port_reset, takt_port_nmi, takt_port_fault, takt_port_fault, takt_port_fault,
+               takt_port_fault, NULL, NULL, NULL, NULL, takt_port_supervisor_call, takt_port_fault,
+               NULL, takt_port_pending_call, takt_port_systick},
 };
 
 void port_reset(void)
@@ -77,10 +78,10 @@ void port_reset(void)
     CORTEX_VTOR = (uint32_t)(uintptr_t)&vectors;
     CORTEX_CPACR |= CORTEX_CPACR_FPU;
     __asm volatile("dsb\n\tisb" ::: "memory");
-    port_begin();
+    takt_port_begin();
     memcpy(image_data_begin, image_data_values, (size_t)(image_data_end - image_data_begin));
     memset(image_bss_begin, 0, (size_t)(image_bss_end - image_bss_begin));
     memset(image_core_begin, 0, (size_t)(image_core_end - image_core_begin));
     (void)main();
-    port_fault();
+    takt_port_fault();
 }

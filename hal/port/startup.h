@@ -12,7 +12,7 @@ typedef void (*startup_vector)(void);
  *     STARTUP_INTERRUPTS(port_interrupts, COUNT) = {[3] = uart_interrupt, ...};
  *
  * and replaces, where it has something to say, the handlers below by functions of the same names. An exception without a
- * handler of its own comes to port_fault, which stays there.
+ * handler of its own comes to takt_port_fault, which stays there.
  */
 #define STARTUP_INTERRUPTS(name, count)                                                            \
     __attribute__((section(".vectors.interrupts"), used)) const startup_vector name[count]
@@ -24,14 +24,14 @@ typedef void (*startup_vector)(void);
 #define STARTUP_CORE_MEMORY __attribute__((section(".bss.core")))
 
 void port_reset(void);
-void port_nmi(void);
-void port_fault(void); /* hard fault, and those of memory, bus and usage */
-void port_supervisor_call(void);
-void port_pending_call(void);
-void port_systick(void);
+void takt_port_nmi(void);
+void takt_port_fault(void); /* hard fault, and those of memory, bus and usage */
+void takt_port_supervisor_call(void);
+void takt_port_pending_call(void);
+void takt_port_systick(void);
 
 /* Called first of all, with the stack alone: clocks, watchdogs. May be left out. */
-void port_begin(void);
+void takt_port_begin(void);
 
 int main(void);
 

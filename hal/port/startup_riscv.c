@@ -11,7 +11,7 @@
 extern uint8_t image_data_begin[], image_data_end[], image_data_values[];
 extern uint8_t image_bss_begin[], image_bss_end[];
 
-void port_fault(void)
+void takt_port_fault(void)
 {
     for (;;) {
     }
@@ -22,7 +22,7 @@ __attribute__((used)) static void start(void)
     memcpy(image_data_begin, image_data_values, (size_t)(image_data_end - image_data_begin));
     memset(image_bss_begin, 0, (size_t)(image_bss_end - image_bss_begin));
     (void)main();
-    port_fault();
+    takt_port_fault();
 }
 
 /* First of the image: the stack, the floating-point unit (mstatus.FS), and where exceptions go. */

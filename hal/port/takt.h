@@ -4,10 +4,10 @@
  *     static struct embedded embedded;
  *     static struct embedded_core core;          the rest of its memory
  *
- *     embedded_init(&embedded, &config);         what the image has: machine, CAN, a serial line, time
- *     interrupt of the control cycle:            embedded_cycle(&embedded, &inputs, late);
- *     interrupt of the panel's line:             embedded_take_byte(&embedded, byte, now_us);
- *     main, for ever:                            embedded_background(&embedded);
+ *     takt_embedded_init(&embedded, &config);         what the image has: machine, CAN, a serial line, time
+ *     interrupt of the control cycle:            takt_embedded_cycle(&embedded, &inputs, late);
+ *     interrupt of the panel's line:             takt_embedded_take_byte(&embedded, byte, now_us);
+ *     main, for ever:                            takt_embedded_background(&embedded);
  *
  * port/embedded.h has the contracts. Those who bring their own panel and program take service/service.h or
  * controller/controller.h, on which it stands.

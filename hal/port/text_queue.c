@@ -7,12 +7,12 @@ static uint32_t least(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-void text_queue_init(struct text_queue *q)
+void takt_text_queue_init(struct text_queue *q)
 {
     memset(q, 0, sizeof *q);
 }
 
-void text_queue_use(struct text_queue *q, bool in_use)
+void takt_text_queue_use(struct text_queue *q, bool in_use)
 {
     q->in_use = in_use;
 }
@@ -86,7 +86,7 @@ static void end(void *context, bool right)
     q->is_wrong = !right;
 }
 
-struct panel_store text_queue_get_store(struct text_queue *q)
+struct panel_store takt_text_queue_get_store(struct text_queue *q)
 {
     return (struct panel_store){.begin = begin,
                                 .write = bring,
@@ -151,7 +151,7 @@ static bool seek(void *context, uint64_t offset)
     return true;
 }
 
-bool text_queue_open(void *queue, struct source *source)
+bool takt_text_queue_open(void *queue, struct source *source)
 {
     struct text_queue *q = queue;
 
@@ -162,7 +162,7 @@ bool text_queue_open(void *queue, struct source *source)
     return true;
 }
 
-void text_queue_adopt(void *queue)
+void takt_text_queue_adopt(void *queue)
 {
     struct text_queue *q = queue;
 

@@ -33,16 +33,16 @@ struct text_queue {
     char byte[TEXT_QUEUE_MAX];
 };
 
-void text_queue_init(struct text_queue *q);
+void takt_text_queue_init(struct text_queue *q);
 
 /* Tells whether the program is running, before what the panel brings is taken. */
-void text_queue_use(struct text_queue *q, bool in_use);
+void takt_text_queue_use(struct text_queue *q, bool in_use);
 
 /* What the panel brings its bytes to. */
-struct panel_store text_queue_get_store(struct text_queue *q);
+struct panel_store takt_text_queue_get_store(struct text_queue *q);
 
 /* For struct service_programs: a source at the beginning. False: none, or its beginning has been read and is gone. */
-bool text_queue_open(void *queue, struct source *source);
-void text_queue_adopt(void *queue);
+bool takt_text_queue_open(void *queue, struct source *source);
+void takt_text_queue_adopt(void *queue);
 
 #endif

@@ -40,9 +40,9 @@ struct remote_hello {
  */
 struct remote_setup {
     uint32_t magic;
-    uint32_t parameters; /* so many */
-    uint32_t tools;      /* so many */
-    uint32_t tables;     /* so many stored tables follow */
+    uint32_t parameters; /* number of them */
+    uint32_t tools;      /* number of them */
+    uint32_t tables;     /* number of stored tables that follow */
     uint32_t from_line;  /* of struct controller_config, as the others */
     uint8_t exact_path;
     uint8_t block_delete;
@@ -82,7 +82,7 @@ struct remote_outputs {
     uint32_t frames;
     uint32_t refused;  /* frames that found no room */
     int32_t fault;     /* code of the fault; 0: none */
-    uint32_t cycle_ns; /* controller_cycle took, by the clock of the image */
+    uint32_t cycle_ns; /* takt_controller_cycle took, by the clock of the image */
     uint32_t background_ns;
     uint32_t blocks;     /* that the background has put on the path so far */
     uint32_t has_record; /* the record is of this cycle */

@@ -55,7 +55,7 @@ _Noreturn void __assert_func(const char *file, int line, const char *function, c
     (void)line;
     (void)function;
     (void)text;
-    semihosting_exit(3);
+    takt_semihosting_exit(3);
 }
 
 /* -- bus and program -- */
@@ -85,7 +85,7 @@ static bool bus_receive(void *context, struct can_frame *frame)
 static long program_read(void *context, char *buffer, size_t size)
 {
     const struct desk *d = context;
-    const size_t count = semihosting_read(d->program, buffer, size);
+    const size_t count = takt_semihosting_read(d->program, buffer, size);
 
     return count > 0 ? (long)count : SOURCE_END;
 }
@@ -94,14 +94,14 @@ static bool program_seek(void *context, uint64_t offset)
 {
     const struct desk *d = context;
 
-    return semihosting_seek(d->program, (uint32_t)offset);
+    return takt_semihosting_seek(d->program, (uint32_t)offset);
 }
 
 static size_t plan_read(void *context, uint8_t *bytes, size_t size)
 {
     const struct desk *d = context;
 
-    return semihosting_read(d->plan, bytes, size);
+    return takt_semihosting_read(d->plan, bytes, size);
 }
 
 /* -- start -- */
@@ -112,33 +112,33 @@ static int open_files(struct desk *d)
     struct files files;
     int setup;
 
-    if (!files_begin(&files))
+    if (!takt_files_begin(&files))
         return -1;
-    setup = files_open_next(&files, SEMIHOSTING_READ);
-    d->program = files_open_next(&files, SEMIHOSTING_READ);
-    d->in = files_open_next(&files, SEMIHOSTING_READ);
-    d->out = files_open_next(&files, SEMIHOSTING_WRITE);
-    d->plan = files_open_next(&files, SEMIHOSTING_READ);
+    setup = takt_files_open_next(&files, SEMIHOSTING_READ);
+    d->program = takt_files_open_next(&files, SEMIHOSTING_READ);
+    d->in = takt_files_open_next(&files, SEMIHOSTING_READ);
+    d->out = takt_files_open_next(&files, SEMIHOSTING_WRITE);
+    d->plan = takt_files_open_next(&files, SEMIHOSTING_READ);
     return d->program < 0 || d->in < 0 || d->out < 0 ? -1 : setup;
 }
 
 static enum takt_error read_table(struct desk *d, int file)
 {
     const struct table_rules rules = {
-        .axes = machine_axes(&d->machine),
+        .axes = takt_machine_axes(&d->machine),
         .largest_mm = d->machine.correction.largest_mm,
         .steepest_ratio = d->machine.correction.steepest_ratio,
     };
     struct diagnostic wrong = {.code = TAKT_ERROR_TABLE_DAMAGED};
     struct remote_table head;
 
-    if (!files_read_all(file, &head, sizeof head) || head.size > sizeof d->bytes ||
-        !files_read_all(file, d->bytes, head.size) ||
-        !table_restore(d->bytes, head.size, &rules, &d->stored, &wrong))
+    if (!takt_files_read_all(file, &head, sizeof head) || head.size > sizeof d->bytes ||
+        !takt_files_read_all(file, d->bytes, head.size) ||
+        !takt_table_restore(d->bytes, head.size, &rules, &d->stored, &wrong))
         return wrong.code;
     if (head.is_volume != 0)
-        return grid_set(&d->correction.volume, &d->stored, &wrong) ? TAKT_OK : wrong.code;
-    return axis_tables_add(&d->correction.axes, &d->stored, &wrong) ? TAKT_OK : wrong.code;
+        return takt_grid_set(&d->correction.volume, &d->stored, &wrong) ? TAKT_OK : wrong.code;
+    return takt_axis_tables_add(&d->correction.axes, &d->stored, &wrong) ? TAKT_OK : wrong.code;
 }
 
 static enum takt_error read_parameters(struct desk *d, int file)
@@ -146,9 +146,9 @@ static enum takt_error read_parameters(struct desk *d, int file)
     struct remote_parameter parameter;
 
     for (uint32_t i = 0; i < d->setup.parameters; i++) {
-        if (!files_read_all(file, &parameter, sizeof parameter))
+        if (!takt_files_read_all(file, &parameter, sizeof parameter))
             return TAKT_ERROR_SOURCE_UNREADABLE;
-        if (!parameters_set(&d->parameters, parameter.number, parameter.value))
+        if (!takt_parameters_set(&d->parameters, parameter.number, parameter.value))
             return TAKT_ERROR_PARAMETERS_FULL;
     }
     return TAKT_OK;
@@ -158,12 +158,13 @@ static enum takt_error read_setup(struct desk *d, int file)
 {
     enum takt_error error;
 
-    if (!files_read_all(file, &d->setup, sizeof d->setup) || d->setup.magic != REMOTE_MAGIC ||
-        !files_read_all(file, &d->machine, sizeof d->machine))
+    if (!takt_files_read_all(file, &d->setup, sizeof d->setup) || d->setup.magic != REMOTE_MAGIC ||
+        !takt_files_read_all(file, &d->machine, sizeof d->machine))
         return TAKT_ERROR_SOURCE_UNREADABLE;
     error = read_parameters(d, file);
-    if (error == TAKT_OK && (d->setup.tools > TOOLS_MAX ||
-                             !files_read_all(file, d->tools, d->setup.tools * sizeof d->tools[0])))
+    if (error == TAKT_OK &&
+        (d->setup.tools > TOOLS_MAX ||
+         !takt_files_read_all(file, d->tools, d->setup.tools * sizeof d->tools[0])))
         error = TAKT_ERROR_SOURCE_UNREADABLE;
     d->table = (struct tool_table){d->tools, d->setup.tools};
     for (uint32_t i = 0; i < d->setup.tables && error == TAKT_OK; i++)
@@ -188,22 +189,22 @@ static void open_controller(struct desk *d)
         .from_line = d->setup.from_line,
     };
 
-    controller_init(&d->controller, &config);
+    takt_controller_init(&d->controller, &config);
 }
 
 /* Compares notes with the desk. False: the run ends here. */
 static bool begin(struct desk *d, int setup)
 {
     const struct remote_hello hello = {REMOTE_MAGIC, sizeof d->machine, sizeof d->tools[0]};
-    struct remote_ready ready = {.clock_hz = desk_clock_hz()};
+    struct remote_ready ready = {.clock_hz = takt_desk_clock_hz()};
     struct diagnostic damage;
 
-    if (!semihosting_write(d->out, &hello, sizeof hello))
+    if (!takt_semihosting_write(d->out, &hello, sizeof hello))
         return false;
-    ready.error = image_is_sound(&damage) ? read_setup(d, setup) : damage.code;
+    ready.error = takt_image_is_sound(&damage) ? read_setup(d, setup) : damage.code;
     if (ready.error == TAKT_OK)
         open_controller(d);
-    return semihosting_write(d->out, &ready, sizeof ready) && ready.error == TAKT_OK;
+    return takt_semihosting_write(d->out, &ready, sizeof ready) && ready.error == TAKT_OK;
 }
 
 /* -- cycles -- */
@@ -211,8 +212,8 @@ static bool begin(struct desk *d, int setup)
 static void set_rise(struct desk *d)
 {
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        correction_set_rise(controller_get_correction(&d->controller), (enum axis)i,
-                            d->received.rise_k[i]);
+        takt_correction_set_rise(takt_controller_get_correction(&d->controller), (enum axis)i,
+                                 d->received.rise_k[i]);
 }
 
 static void open_bus(struct desk *d)
@@ -225,23 +226,23 @@ static void open_bus(struct desk *d)
 
 static void run_cycle(struct desk *d)
 {
-    uint32_t start = desk_clock_now();
+    uint32_t start = takt_desk_clock_now();
 
-    controller_background(&d->controller);
-    d->sent.background_ns = desk_clock_ns_since(start);
-    start = desk_clock_now();
-    controller_cycle(&d->controller, &d->received.inputs);
-    d->sent.cycle_ns = desk_clock_ns_since(start);
+    takt_controller_background(&d->controller);
+    d->sent.background_ns = takt_desk_clock_ns_since(start);
+    start = takt_desk_clock_now();
+    takt_controller_cycle(&d->controller, &d->received.inputs);
+    d->sent.cycle_ns = takt_desk_clock_ns_since(start);
 }
 
 static void fill_outputs(struct desk *d)
 {
-    const struct cycle_record *record = controller_get_record(&d->controller);
+    const struct cycle_record *record = takt_controller_get_record(&d->controller);
 
     d->sent.frames = (uint32_t)(d->bus.sent - d->sent.frame);
     d->sent.refused = d->bus.refused;
-    d->sent.state = controller_get_state(&d->controller);
-    d->sent.fault = controller_get_fault(&d->controller)->code;
+    d->sent.state = takt_controller_get_state(&d->controller);
+    d->sent.fault = takt_controller_get_fault(&d->controller)->code;
     d->sent.blocks = d->controller.path.pushed;
     d->sent.has_record = record != NULL;
     if (record != NULL)
@@ -254,16 +255,17 @@ static bool answer(const struct desk *d)
     const size_t size =
         offsetof(struct remote_outputs, frame) + d->sent.frames * sizeof d->sent.frame[0];
 
-    return semihosting_write(d->out, &d->sent, size);
+    return takt_semihosting_write(d->out, &d->sent, size);
 }
 
 static bool ask(struct desk *d)
 {
     const size_t head = offsetof(struct remote_inputs, frame);
 
-    return files_read_all(d->in, &d->received, head) && d->received.frames <= REMOTE_FRAMES_MAX &&
-           files_read_all(d->in, d->received.frame,
-                          d->received.frames * sizeof d->received.frame[0]);
+    return takt_files_read_all(d->in, &d->received, head) &&
+           d->received.frames <= REMOTE_FRAMES_MAX &&
+           takt_files_read_all(d->in, d->received.frame,
+                               d->received.frames * sizeof d->received.frame[0]);
 }
 
 static void run(struct desk *d)
@@ -282,11 +284,11 @@ int main(void)
 {
     int setup;
 
-    desk_clock_start();
+    takt_desk_clock_start();
     setup = open_files(&desk);
     if (setup < 0)
-        semihosting_exit(2);
+        takt_semihosting_exit(2);
     if (begin(&desk, setup))
         run(&desk);
-    semihosting_exit(0);
+    takt_semihosting_exit(0);
 }

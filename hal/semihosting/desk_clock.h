@@ -7,10 +7,10 @@
 
 #include <stdint.h>
 
-uint32_t desk_clock_hz(void);
+uint32_t takt_desk_clock_hz(void);
 
-void desk_clock_start(void);
-uint32_t desk_clock_now(void);
-uint32_t desk_clock_ns_since(uint32_t start);
+void takt_desk_clock_start(void);
+uint32_t takt_desk_clock_now(void);
+uint32_t takt_desk_clock_ns_since(uint32_t start);
 
 #endif

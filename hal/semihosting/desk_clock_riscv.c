@@ -2,7 +2,7 @@
 #include "semihosting/desk_clock.h"
 
 /* The counter of cycles (RISC-V Privileged Architecture, 3.1.10): an instruction each. */
-uint32_t desk_clock_now(void)
+uint32_t takt_desk_clock_now(void)
 {
     uintptr_t cycles;
 
@@ -10,16 +10,16 @@ uint32_t desk_clock_now(void)
     return (uint32_t)cycles;
 }
 
-uint32_t desk_clock_hz(void)
+uint32_t takt_desk_clock_hz(void)
 {
     return 1000000000U;
 }
 
-void desk_clock_start(void)
+void takt_desk_clock_start(void)
 {
 }
 
-uint32_t desk_clock_ns_since(uint32_t start)
+uint32_t takt_desk_clock_ns_since(uint32_t start)
 {
-    return desk_clock_now() - start;
+    return takt_desk_clock_now() - start;
 }

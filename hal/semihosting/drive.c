@@ -26,7 +26,7 @@ _Noreturn void __assert_func(const char *file, int line, const char *function, c
     (void)line;
     (void)function;
     (void)text;
-    semihosting_exit(3);
+    takt_semihosting_exit(3);
 }
 
 /* -- what the drive asks of its surroundings -- */
@@ -35,9 +35,9 @@ static struct twin_reply ask(const struct twin_ask *question)
 {
     struct twin_reply reply;
 
-    if (!semihosting_write(node.out, question, sizeof *question) ||
-        !files_read_all(node.in, &reply, sizeof reply))
-        semihosting_exit(1);
+    if (!takt_semihosting_write(node.out, question, sizeof *question) ||
+        !takt_files_read_all(node.in, &reply, sizeof reply))
+        takt_semihosting_exit(1);
     return reply;
 }
 
@@ -101,10 +101,10 @@ static bool open_talk(void)
 {
     struct files files;
 
-    if (!files_begin(&files))
+    if (!takt_files_begin(&files))
         return false;
-    node.in = files_open_next(&files, SEMIHOSTING_READ);
-    node.out = files_open_next(&files, SEMIHOSTING_WRITE);
+    node.in = takt_files_open_next(&files, SEMIHOSTING_READ);
+    node.out = takt_files_open_next(&files, SEMIHOSTING_WRITE);
     return node.in >= 0 && node.out >= 0;
 }
 
@@ -115,12 +115,13 @@ static bool begin(void)
     const struct motor_port motor = {.turn = turn, .sense = sense};
     struct diagnostic damage;
 
-    if (!image_is_sound(&damage) || !semihosting_write(node.out, &hello, sizeof hello) ||
-        !files_read_all(node.in, &node.setup, sizeof node.setup) ||
-        node.setup.magic != TWIN_MAGIC || !files_read_all(node.in, &node.config, TWIN_CONFIG_SIZE))
+    if (!takt_image_is_sound(&damage) || !takt_semihosting_write(node.out, &hello, sizeof hello) ||
+        !takt_files_read_all(node.in, &node.setup, sizeof node.setup) ||
+        node.setup.magic != TWIN_MAGIC ||
+        !takt_files_read_all(node.in, &node.config, TWIN_CONFIG_SIZE))
         return false;
-    servo_init(&node.servo, &node.config, node.setup.has_target != 0 ? &node.setup.target : NULL,
-               &port, &motor);
+    takt_servo_init(&node.servo, &node.config,
+                    node.setup.has_target != 0 ? &node.setup.target : NULL, &port, &motor);
     return true;
 }
 
@@ -128,9 +129,9 @@ static bool begin(void)
 
 static void take_eds(uint32_t size)
 {
-    if (size > sizeof node.eds || !files_read_all(node.in, node.eds, size))
-        semihosting_exit(1);
-    servo_set_eds(&node.servo, node.eds, size);
+    if (size > sizeof node.eds || !takt_files_read_all(node.in, node.eds, size))
+        takt_semihosting_exit(1);
+    takt_servo_set_eds(&node.servo, node.eds, size);
 }
 
 static void meddle(void)
@@ -138,7 +139,7 @@ static void meddle(void)
     const struct servo_meddler meddler = {
         .holds_back = holds_back, .aborts_sdo = aborts_sdo, .overrides = overrides};
 
-    servo_meddle(&node.servo, &meddler);
+    takt_servo_meddle(&node.servo, &meddler);
 }
 
 static void carry_out_special(const struct twin_order *order)
@@ -146,13 +147,13 @@ static void carry_out_special(const struct twin_order *order)
     struct servo *servo = &node.servo;
 
     if (order->kind == TWIN_FAIL)
-        servo_fail(servo, (uint16_t)order->a, (uint8_t)order->b);
+        takt_servo_fail(servo, (uint16_t)order->a, (uint8_t)order->b);
     else if (order->kind == TWIN_EMERGENCY)
-        servo_send_emergency(servo, (uint16_t)order->a, (uint8_t)order->b);
+        takt_servo_send_emergency(servo, (uint16_t)order->a, (uint8_t)order->b);
     else if (order->kind == TWIN_REBOOT)
-        servo_reboot(servo);
+        takt_servo_reboot(servo);
     else if (order->kind == TWIN_WRITE)
-        (void)servo_write_object(servo, order->a, order->b);
+        (void)takt_servo_write_object(servo, order->a, order->b);
     else if (order->kind == TWIN_MEDDLE)
         meddle();
     else if (order->kind == TWIN_EDS)
@@ -164,7 +165,7 @@ static void take_frame(const struct twin_order *order)
     struct can_frame frame;
 
     classical_frame_get(&order->frame, &frame);
-    servo_on_frame_at(&node.servo, &frame, order->time_ns);
+    takt_servo_on_frame_at(&node.servo, &frame, order->time_ns);
 }
 
 static void carry_out(const struct twin_order *order)
@@ -172,15 +173,15 @@ static void carry_out(const struct twin_order *order)
     struct servo *servo = &node.servo;
 
     if (order->kind == TWIN_BOOT)
-        servo_boot(servo);
+        takt_servo_boot(servo);
     else if (order->kind == TWIN_FRAME)
         take_frame(order);
     else if (order->kind == TWIN_STEP)
-        servo_step(servo, order->a);
+        takt_servo_step(servo, order->a);
     else if (order->kind == TWIN_TOUCH)
-        servo_touch(servo, order->a != 0, order->ratio);
+        takt_servo_touch(servo, order->a != 0, order->ratio);
     else if (order->kind == TWIN_LOOK)
-        servo_loop_look(&servo->loop);
+        takt_servo_loop_look(&servo->loop);
     else
         carry_out_special(order);
 }
@@ -189,9 +190,10 @@ static void run(void)
 {
     const struct twin_ask done = {.kind = TWIN_DONE};
 
-    while (files_read_all(node.in, &node.order, sizeof node.order) && node.order.kind != TWIN_END) {
+    while (takt_files_read_all(node.in, &node.order, sizeof node.order) &&
+           node.order.kind != TWIN_END) {
         carry_out(&node.order);
-        if (!semihosting_write(node.out, &done, sizeof done))
+        if (!takt_semihosting_write(node.out, &done, sizeof done))
             return;
     }
 }
@@ -199,8 +201,8 @@ static void run(void)
 int main(void)
 {
     if (!open_talk())
-        semihosting_exit(2);
+        takt_semihosting_exit(2);
     if (begin())
         run();
-    semihosting_exit(0);
+    takt_semihosting_exit(0);
 }

@@ -19,25 +19,26 @@ static char *next_word(struct files *files)
     return word;
 }
 
-bool files_begin(struct files *files)
+bool takt_files_begin(struct files *files)
 {
     files->rest = files->words;
-    return semihosting_command_line(files->words, sizeof files->words) && next_word(files) != NULL;
+    return takt_semihosting_command_line(files->words, sizeof files->words) &&
+           next_word(files) != NULL;
 }
 
-int files_open_next(struct files *files, enum semihosting_mode mode)
+int takt_files_open_next(struct files *files, enum semihosting_mode mode)
 {
     const char *name = next_word(files);
 
-    return name == NULL ? -1 : semihosting_open(name, mode);
+    return name == NULL ? -1 : takt_semihosting_open(name, mode);
 }
 
-bool files_read_all(int file, void *bytes, size_t size)
+bool takt_files_read_all(int file, void *bytes, size_t size)
 {
     uint8_t *at = bytes;
 
     while (size > 0) {
-        const size_t count = semihosting_read(file, at, size);
+        const size_t count = takt_semihosting_read(file, at, size);
 
         if (count == 0)
             return false;

@@ -17,12 +17,12 @@ struct files {
 };
 
 /* False: there is no such line. The first word is the image's own. */
-bool files_begin(struct files *files);
+bool takt_files_begin(struct files *files);
 
 /* The handle of the file that the next word names; -1: there is no further word, or no such file. */
-int files_open_next(struct files *files, enum semihosting_mode mode);
+int takt_files_open_next(struct files *files, enum semihosting_mode mode);
 
 /* All of size bytes; a pipe may give them in pieces. False: it has ended. */
-bool files_read_all(int file, void *bytes, size_t size);
+bool takt_files_read_all(int file, void *bytes, size_t size);
 
 #endif

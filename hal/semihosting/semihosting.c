@@ -18,7 +18,7 @@ enum operation {
 
 static uintptr_t call(enum operation operation, const uintptr_t *arguments)
 {
-    return semihosting_call((uintptr_t)operation, arguments);
+    return takt_semihosting_call((uintptr_t)operation, arguments);
 }
 
 static uintptr_t address(const void *at)
@@ -26,14 +26,14 @@ static uintptr_t address(const void *at)
     return (uintptr_t)at;
 }
 
-int semihosting_open(const char *path, enum semihosting_mode mode)
+int takt_semihosting_open(const char *path, enum semihosting_mode mode)
 {
     const uintptr_t block[] = {address(path), (uintptr_t)mode, strlen(path)};
 
     return (int)call(SYS_OPEN, block);
 }
 
-size_t semihosting_read(int file, void *bytes, size_t size)
+size_t takt_semihosting_read(int file, void *bytes, size_t size)
 {
     const uintptr_t block[] = {(uintptr_t)file, address(bytes), size};
     const uintptr_t missing = call(SYS_READ, block);
@@ -41,28 +41,28 @@ size_t semihosting_read(int file, void *bytes, size_t size)
     return missing <= size ? size - missing : 0;
 }
 
-bool semihosting_write(int file, const void *bytes, size_t size)
+bool takt_semihosting_write(int file, const void *bytes, size_t size)
 {
     const uintptr_t block[] = {(uintptr_t)file, address(bytes), size};
 
     return call(SYS_WRITE, block) == 0;
 }
 
-bool semihosting_seek(int file, uint32_t offset)
+bool takt_semihosting_seek(int file, uint32_t offset)
 {
     const uintptr_t block[] = {(uintptr_t)file, offset};
 
     return call(SYS_SEEK, block) == 0;
 }
 
-bool semihosting_command_line(char *text, size_t size)
+bool takt_semihosting_command_line(char *text, size_t size)
 {
     uintptr_t block[] = {address(text), size};
 
     return call(SYS_GET_CMDLINE, block) == 0;
 }
 
-void semihosting_exit(uint32_t status)
+void takt_semihosting_exit(uint32_t status)
 {
     const uintptr_t block[] = {STOPPED_APPLICATION_EXIT, status};
 

@@ -13,15 +13,15 @@
 enum semihosting_mode { SEMIHOSTING_READ = 1, SEMIHOSTING_UPDATE = 3, SEMIHOSTING_WRITE = 5 };
 
 /* A handle; -1: it cannot be opened. */
-int semihosting_open(const char *path, enum semihosting_mode mode);
+int takt_semihosting_open(const char *path, enum semihosting_mode mode);
 /* Up to size bytes; returns how many, 0 at the end. */
-size_t semihosting_read(int file, void *bytes, size_t size);
+size_t takt_semihosting_read(int file, void *bytes, size_t size);
 /* False: not all of it could be written. */
-bool semihosting_write(int file, const void *bytes, size_t size);
-bool semihosting_seek(int file, uint32_t offset);
+bool takt_semihosting_write(int file, const void *bytes, size_t size);
+bool takt_semihosting_seek(int file, uint32_t offset);
 /* The words the image was started with, zero-terminated. False: there is no room for them. */
-bool semihosting_command_line(char *text, size_t size);
+bool takt_semihosting_command_line(char *text, size_t size);
 /* Does not return. */
-_Noreturn void semihosting_exit(uint32_t status);
+_Noreturn void takt_semihosting_exit(uint32_t status);
 
 #endif

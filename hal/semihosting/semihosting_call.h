@@ -6,6 +6,6 @@
 
 #include <stdint.h>
 
-uintptr_t semihosting_call(uintptr_t operation, const uintptr_t *arguments);
+uintptr_t takt_semihosting_call(uintptr_t operation, const uintptr_t *arguments);
 
 #endif

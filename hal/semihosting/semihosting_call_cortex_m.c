@@ -1,7 +1,7 @@
 /* The instruction by which a Cortex-M asks its debugger. */
 #include "semihosting/semihosting_call.h"
 
-uintptr_t semihosting_call(uintptr_t operation, const uintptr_t *arguments)
+uintptr_t takt_semihosting_call(uintptr_t operation, const uintptr_t *arguments)
 {
     register uintptr_t number __asm("r0") = operation;
     register const uintptr_t *block __asm("r1") = arguments;

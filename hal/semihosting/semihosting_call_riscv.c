@@ -2,7 +2,7 @@
 #include "semihosting/semihosting_call.h"
 
 /* RISC-V Semihosting, 1.0: these three instructions uncompressed, one behind the other on one page. */
-uintptr_t semihosting_call(uintptr_t operation, const uintptr_t *arguments)
+uintptr_t takt_semihosting_call(uintptr_t operation, const uintptr_t *arguments)
 {
     register uintptr_t number __asm("a0") = operation;
     register const uintptr_t *block __asm("a1") = arguments;

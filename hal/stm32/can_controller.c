@@ -4,15 +4,15 @@
 
 #include <string.h>
 
-bool can_controller_open(struct can_controller *can, const struct can_config *config)
+bool takt_can_controller_open(struct can_controller *can, const struct can_config *config)
 {
     memset(can, 0, sizeof *can);
     can->state = CAN_ABSENT;
     if (config->rates.nominal == 0 ||
-        can_hardware_find_impossible(config->clock_hz, &config->rates) != 0 ||
-        config->nodes > CAN_NODES_MAX || !can_hardware_open(config))
+        takt_can_hardware_find_impossible(config->clock_hz, &config->rates) != 0 ||
+        config->nodes > CAN_NODES_MAX || !takt_can_hardware_open(config))
         return false;
-    can->state = can_hardware_join() ? CAN_ON : CAN_WAITING;
+    can->state = takt_can_hardware_join() ? CAN_ON : CAN_WAITING;
     return true;
 }
 
@@ -64,7 +64,7 @@ static void load_mailbox(struct can_controller *can, unsigned i, const struct ca
     can->mailbox[i] = *frame;
     can->is_full[i] = true;
     can->is_wanted_back[i] = false;
-    can_hardware_load(i, frame);
+    takt_can_hardware_load(i, frame);
 }
 
 /* The mailbox with the least urgent frame. */
@@ -89,7 +89,7 @@ static void make_room(struct can_controller *can, uint16_t id)
             return;
     }
     can->is_wanted_back[last] = true;
-    can_hardware_take_back(last);
+    takt_can_hardware_take_back(last);
 }
 
 static void fill_mailboxes(struct can_controller *can)
@@ -125,11 +125,11 @@ static void empty_mailbox(struct can_controller *can, unsigned i, bool sent)
     }
 }
 
-void can_controller_interrupt_sent(struct can_controller *can)
+void takt_can_controller_interrupt_sent(struct can_controller *can)
 {
-    const uint32_t before = chip_lock();
+    const uint32_t before = takt_chip_lock();
     unsigned sent;
-    const unsigned done = can_hardware_take_done(&sent);
+    const unsigned done = takt_can_hardware_take_done(&sent);
 
     for (unsigned i = 0; i < CAN_MAILBOXES; i++) {
         if ((done >> i & 1U) != 0)
@@ -137,21 +137,21 @@ void can_controller_interrupt_sent(struct can_controller *can)
     }
     if (can->state == CAN_ON)
         fill_mailboxes(can);
-    chip_unlock(before);
+    takt_chip_unlock(before);
 }
 
 /* One place stays free for a frame that is taken back. */
 static bool send(void *context, const struct can_frame *frame)
 {
     struct can_controller *can = context;
-    const uint32_t before = chip_lock();
+    const uint32_t before = takt_chip_lock();
     const bool good = can->state == CAN_ON && can->queued < CAN_QUEUE_MAX - 1;
 
     if (good) {
         put_into_queue(can, frame, true);
         fill_mailboxes(can);
     }
-    chip_unlock(before);
+    takt_chip_unlock(before);
     return good;
 }
 
@@ -171,15 +171,15 @@ static void keep(struct can_controller *can, const struct can_frame *frame)
 }
 
 /* Until there is nothing left; an end all the same. */
-void can_controller_interrupt_received(struct can_controller *can)
+void takt_can_controller_interrupt_received(struct can_controller *can)
 {
     struct can_frame frame;
 
     for (unsigned i = 0; i < CAN_RECEIVED_MAX; i++) {
         enum can_heard heard;
 
-        can->counts.overruns += can_hardware_take_overrun();
-        heard = can_hardware_hear(&frame);
+        can->counts.overruns += takt_can_hardware_take_overrun();
+        heard = takt_can_hardware_hear(&frame);
         if (heard == CAN_HEARD_NOTHING)
             return;
         if (heard == CAN_HEARD_FRAME)
@@ -190,18 +190,18 @@ void can_controller_interrupt_received(struct can_controller *can)
 static bool receive(void *context, struct can_frame *frame)
 {
     struct can_controller *can = context;
-    const uint32_t before = chip_lock();
+    const uint32_t before = takt_chip_lock();
     const bool any = can->first != can->behind;
 
     if (any) {
         *frame = can->received[can->first];
         can->first = (can->first + 1) % CAN_RECEIVED_MAX;
     }
-    chip_unlock(before);
+    takt_chip_unlock(before);
     return any;
 }
 
-struct can_port can_controller_get_port(struct can_controller *can)
+struct can_port takt_can_controller_get_port(struct can_controller *can)
 {
     return (struct can_port){.send = send, .receive = receive, .context = can};
 }
@@ -215,12 +215,12 @@ static void leave_bus(struct can_controller *can)
     can->counts.dropped += can->queued;
     can->queued = 0;
     can->state = CAN_BUS_OFF;
-    can_hardware_leave();
+    takt_can_hardware_leave();
 }
 
 static void count_error(struct can_controller *can)
 {
-    const unsigned error = can_hardware_take_error();
+    const unsigned error = takt_can_hardware_take_error();
 
     if (error != 0)
         can->counts.error[error]++;
@@ -235,26 +235,26 @@ static void forget_mailboxes(struct can_controller *can)
 
 static void watch_join(struct can_controller *can)
 {
-    if (!can_hardware_takes_part())
+    if (!takt_can_hardware_takes_part())
         return;
     forget_mailboxes(can);
     can->state = CAN_ON;
 }
 
-void can_controller_poll(struct can_controller *can)
+void takt_can_controller_poll(struct can_controller *can)
 {
-    const uint32_t before = chip_lock();
+    const uint32_t before = takt_chip_lock();
 
     switch (can->state) {
     case CAN_ABSENT:
         break;
     case CAN_ON:
         count_error(can);
-        if (can_hardware_is_off())
+        if (takt_can_hardware_is_off())
             leave_bus(can);
         break;
     case CAN_BUS_OFF:
-        if (can_hardware_rejoin())
+        if (takt_can_hardware_rejoin())
             can->state = CAN_REJOINING;
         break;
     case CAN_WAITING:
@@ -262,15 +262,15 @@ void can_controller_poll(struct can_controller *can)
         watch_join(can);
         break;
     }
-    chip_unlock(before);
+    takt_chip_unlock(before);
 }
 
-enum can_state can_controller_get_state(const struct can_controller *can)
+enum can_state takt_can_controller_get_state(const struct can_controller *can)
 {
     return can->state;
 }
 
-const struct can_counts *can_controller_get_counts(const struct can_controller *can)
+const struct can_counts *takt_can_controller_get_counts(const struct can_controller *can)
 {
     return &can->counts;
 }

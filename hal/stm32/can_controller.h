@@ -11,7 +11,7 @@
  *   again, so that it waits for one frame on the bus at most (no inversion of priorities).
  * - After bus-off what was to be sent is dropped, being old, and the bus is joined again; until then send refuses.
  *
- * No call waits for the bus. can_controller_open waits for the controller, with an end.
+ * No call waits for the bus. takt_can_controller_open waits for the controller, with an end.
  */
 #ifndef TAKT_STM32_CAN_CONTROLLER_H
 #define TAKT_STM32_CAN_CONTROLLER_H
@@ -30,7 +30,7 @@ enum can_state {
     CAN_REJOINING /* hears 128 times 11 recessive bits before it may send again */
 };
 
-/* Since can_controller_open; they wrap. */
+/* Since takt_can_controller_open; they wrap. */
 struct can_counts {
     uint32_t sent, received;
     uint32_t taken_back; /* mailboxes emptied for something more urgent */
@@ -58,19 +58,19 @@ struct can_controller {
 /*
  * Rates and filters; then joins the bus, which may take until later (CAN_WAITING). False: a rate is not possible, there are more than CAN_NODES_MAX nodes, or the controller does not answer; its state is CAN_ABSENT then.
  */
-bool can_controller_open(struct can_controller *can, const struct can_config *config);
+bool takt_can_controller_open(struct can_controller *can, const struct can_config *config);
 
 /* For hal/can.h. The controller must not be moved afterwards. */
-struct can_port can_controller_get_port(struct can_controller *can);
+struct can_port takt_can_controller_get_port(struct can_controller *can);
 
 /* From the interrupts of mailboxes and of the receive FIFO. */
-void can_controller_interrupt_sent(struct can_controller *can);
-void can_controller_interrupt_received(struct can_controller *can);
+void takt_can_controller_interrupt_sent(struct can_controller *can);
+void takt_can_controller_interrupt_received(struct can_controller *can);
 
 /* Once every control cycle: watches for bus-off and leads back. */
-void can_controller_poll(struct can_controller *can);
+void takt_can_controller_poll(struct can_controller *can);
 
-enum can_state can_controller_get_state(const struct can_controller *can);
-const struct can_counts *can_controller_get_counts(const struct can_controller *can);
+enum can_state takt_can_controller_get_state(const struct can_controller *can);
+const struct can_counts *takt_can_controller_get_counts(const struct can_controller *can);
 
 #endif

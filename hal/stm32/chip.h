@@ -10,17 +10,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-uint32_t chip_read(uint32_t address);
-void chip_write(uint32_t address, uint32_t value);
+uint32_t takt_chip_read(uint32_t address);
+void takt_chip_write(uint32_t address, uint32_t value);
 
-/* No interrupt from here to chip_unlock, which takes what chip_lock returned. May be nested. */
-uint32_t chip_lock(void);
-void chip_unlock(uint32_t before);
+/* No interrupt from here to takt_chip_unlock, which takes what takt_chip_lock returned. May be nested. */
+uint32_t takt_chip_lock(void);
+void takt_chip_unlock(uint32_t before);
 
 /* Clears bits, then sets others. */
 static inline void chip_change(uint32_t address, uint32_t clear, uint32_t set)
 {
-    chip_write(address, (chip_read(address) & ~clear) | set);
+    takt_chip_write(address, (takt_chip_read(address) & ~clear) | set);
 }
 
 /*
@@ -30,7 +30,7 @@ static inline void chip_change(uint32_t address, uint32_t clear, uint32_t set)
 static inline bool chip_wait(uint32_t address, uint32_t mask, uint32_t value, uint32_t reads)
 {
     while (reads-- > 0) {
-        if ((chip_read(address) & mask) == value)
+        if ((takt_chip_read(address) & mask) == value)
             return true;
     }
     return false;

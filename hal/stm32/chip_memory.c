@@ -1,17 +1,17 @@
 /* Registers as loads and stores: chip.h on the chip itself. */
 #include "stm32/chip.h"
 
-uint32_t chip_read(uint32_t address)
+uint32_t takt_chip_read(uint32_t address)
 {
     return *(volatile const uint32_t *)(uintptr_t)address;
 }
 
-void chip_write(uint32_t address, uint32_t value)
+void takt_chip_write(uint32_t address, uint32_t value)
 {
     *(volatile uint32_t *)(uintptr_t)address = value;
 }
 
-uint32_t chip_lock(void)
+uint32_t takt_chip_lock(void)
 {
     uint32_t before;
 
@@ -19,7 +19,7 @@ uint32_t chip_lock(void)
     return before;
 }
 
-void chip_unlock(uint32_t before)
+void takt_chip_unlock(uint32_t before)
 {
     __asm volatile("msr primask, %0" ::"r"(before) : "memory");
 }

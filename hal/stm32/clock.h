@@ -23,6 +23,6 @@ struct clock {
 };
 
 /* To be called once, at the start, while the chip runs on its internal oscillator. */
-void clock_start(struct clock *clock, uint32_t crystal_hz);
+void takt_clock_start(struct clock *clock, uint32_t crystal_hz);
 
 #endif

@@ -8,17 +8,17 @@
 
 static uint32_t check_of(const struct crash_record *record)
 {
-    return crc32_add(CRC32_START, record, sizeof *record);
+    return takt_crc32_add(CRC32_START, record, sizeof *record);
 }
 
-void crash_keep(struct crash_memory *memory, const struct crash_record *record)
+void takt_crash_keep(struct crash_memory *memory, const struct crash_record *record)
 {
     memory->mark = MARK;
     memory->record = *record;
     memory->check = check_of(record);
 }
 
-bool crash_take(struct crash_memory *memory, struct crash_record *record)
+bool takt_crash_take(struct crash_memory *memory, struct crash_record *record)
 {
     const bool any = memory->mark == MARK && memory->check == check_of(&memory->record);
 
@@ -27,7 +27,7 @@ bool crash_take(struct crash_memory *memory, struct crash_record *record)
     return any;
 }
 
-const char *crash_name(uint32_t cause)
+const char *takt_crash_name(uint32_t cause)
 {
     static const char *const names[CRASH_CAUSES] = {
         "a hard fault",  "a memory fault",          "a bus fault",

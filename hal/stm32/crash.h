@@ -36,12 +36,12 @@ struct crash_memory {
     uint32_t check;
 };
 
-void crash_keep(struct crash_memory *memory, const struct crash_record *record);
+void takt_crash_keep(struct crash_memory *memory, const struct crash_record *record);
 
 /* False: there is none. It is told once. */
-bool crash_take(struct crash_memory *memory, struct crash_record *record);
+bool takt_crash_take(struct crash_memory *memory, struct crash_record *record);
 
 /* "a hard fault" and so on. */
-const char *crash_name(uint32_t cause);
+const char *takt_crash_name(uint32_t cause);
 
 #endif

@@ -19,15 +19,15 @@ struct frame {
 
 __attribute__((section(".noinit"))) static struct crash_memory memory;
 
-bool exceptions_take_crash(struct crash_record *record)
+bool takt_exceptions_take_crash(struct crash_record *record)
 {
-    return crash_take(&memory, record);
+    return takt_crash_take(&memory, record);
 }
 
 static _Noreturn void start_anew(const struct crash_record *record)
 {
     cortex_disable_all();
-    crash_keep(&memory, record);
+    takt_crash_keep(&memory, record);
     peripherals_write_back(&memory, sizeof memory);
     __asm volatile("dsb" ::: "memory");
     CORTEX_AIRCR = CORTEX_AIRCR_RESET;
@@ -35,7 +35,7 @@ static _Noreturn void start_anew(const struct crash_record *record)
     }
 }
 
-void exceptions_crash(enum crash_cause cause, uint32_t address, uint32_t caller)
+void takt_exceptions_crash(enum crash_cause cause, uint32_t address, uint32_t caller)
 {
     const struct crash_record record = {.cause = cause, .address = address, .caller = caller};
 
@@ -85,15 +85,15 @@ void exceptions_fault(const struct frame *frame)
 }
 
 /* All handlers run on the main stack, and so did whoever failed. */
-__attribute__((naked)) void port_fault(void)
+__attribute__((naked)) void takt_port_fault(void)
 {
     __asm volatile("mrs r0, msp\n\tb exceptions_fault");
 }
 
 /* Only the clock security system raises it. */
-void port_nmi(void)
+void takt_port_nmi(void)
 {
-    exceptions_crash(CRASH_CRYSTAL, 0, 0);
+    takt_exceptions_crash(CRASH_CRYSTAL, 0, 0);
 }
 
 /* What assert calls, in newlib and in picolibc. */
@@ -101,5 +101,5 @@ _Noreturn void __assert_func(const char *file, int line, const char *function, c
 {
     (void)function;
     (void)text;
-    exceptions_crash(CRASH_ASSERTION, (uint32_t)line, (uint32_t)(uintptr_t)file);
+    takt_exceptions_crash(CRASH_ASSERTION, (uint32_t)line, (uint32_t)(uintptr_t)file);
 }

@@ -8,9 +8,9 @@
 #include "stm32/crash.h"
 
 /* The record of the last run. False: it did not end so. */
-bool exceptions_take_crash(struct crash_record *record);
+bool takt_exceptions_take_crash(struct crash_record *record);
 
 /* Keeps a record and starts anew. */
-_Noreturn void exceptions_crash(enum crash_cause cause, uint32_t address, uint32_t caller);
+_Noreturn void takt_exceptions_crash(enum crash_cause cause, uint32_t address, uint32_t caller);
 
 #endif

@@ -7,7 +7,7 @@
 
 static bool is_problem(struct diagnostic *problem, enum takt_error code, double value)
 {
-    diagnostic_set(problem, code, 0, 0, "", 0, value);
+    takt_diagnostic_set(problem, code, 0, 0, "", 0, value);
     return true;
 }
 
@@ -17,7 +17,7 @@ static bool find_crash(const struct findings *found, struct diagnostic *problem)
     if (!found->has_crashed)
         return false;
     (void)is_problem(problem, TAKT_ERROR_CRASHED, (double)found->crash.address);
-    problem->meaning = crash_name(found->crash.cause);
+    problem->meaning = takt_crash_name(found->crash.cause);
     return true;
 }
 
@@ -67,7 +67,7 @@ static bool find_steps(const struct findings *found, struct diagnostic *problem)
            is_problem(problem, TAKT_ERROR_STEP_CYCLE, (double)longest_us);
 }
 
-bool findings_next(const struct findings *found, unsigned *at, struct diagnostic *problem)
+bool takt_findings_next(const struct findings *found, unsigned *at, struct diagnostic *problem)
 {
     static bool (*const kinds[])(const struct findings *found, struct diagnostic *problem) = {
         find_image,   find_crash, find_bite, find_settings,

@@ -8,7 +8,7 @@
 
 #include "hal/flash.h"
 
-/* Of the watchdog while a sector is erased, and otherwise. */
+/* Timeout of the watchdog while a sector is erased, and otherwise. */
 #define FLASH_WATCHDOG_MS     8000U
 #define FLASH_WATCHDOG_MS_RUN 250U
 
@@ -28,6 +28,6 @@ struct flash {
 };
 
 /* mapped: where the first sector can be read: FLASH_SECTOR_ADDRESS on the chip. */
-struct flash_port flash_get_port(struct flash *flash, const uint8_t *mapped);
+struct flash_port takt_flash_get_port(struct flash *flash, const uint8_t *mapped);
 
 #endif

@@ -35,30 +35,30 @@ static void set_mode(struct gpio_pin pin, enum mode mode, enum pull pull)
 {
     chip_change(GPIO_CLOCKS, 0, 1U << pin.port);
     /* The clock of a port is there two of its cycles later: reading back waits for it. */
-    (void)chip_read(GPIO_CLOCKS);
+    (void)takt_chip_read(GPIO_CLOCKS);
     set_pair(pin, GPIO_PUPDR, pull);
     set_pair(pin, GPIO_OSPEEDR, SPEED_HIGH);
     set_pair(pin, GPIO_MODER, mode);
 }
 
-uint32_t gpio_get_output_register(enum gpio_port port)
+uint32_t takt_gpio_get_output_register(enum gpio_port port)
 {
     return address_of(port, GPIO_ODR);
 }
 
-void gpio_set_output(struct gpio_pin pin)
+void takt_gpio_set_output(struct gpio_pin pin)
 {
     chip_change(GPIO_CLOCKS, 0, 1U << pin.port);
-    gpio_write(pin, false);
+    takt_gpio_write(pin, false);
     set_mode(pin, MODE_OUTPUT, PULL_NONE);
 }
 
-void gpio_set_input(struct gpio_pin pin, bool pulled_up)
+void takt_gpio_set_input(struct gpio_pin pin, bool pulled_up)
 {
     set_mode(pin, MODE_INPUT, pulled_up ? PULL_UP : PULL_NONE);
 }
 
-void gpio_set_function(struct gpio_pin pin, unsigned function)
+void takt_gpio_set_function(struct gpio_pin pin, unsigned function)
 {
     const unsigned shift = 4U * (pin.number % 8U);
     const uint32_t offset = GPIO_AFR + 4U * (pin.number / 8U);
@@ -68,12 +68,12 @@ void gpio_set_function(struct gpio_pin pin, unsigned function)
     set_mode(pin, MODE_FUNCTION, PULL_UP);
 }
 
-void gpio_write(struct gpio_pin pin, bool high)
+void takt_gpio_write(struct gpio_pin pin, bool high)
 {
-    chip_write(address_of(pin.port, GPIO_BSRR), 1U << (pin.number + (high ? 0U : 16U)));
+    takt_chip_write(address_of(pin.port, GPIO_BSRR), 1U << (pin.number + (high ? 0U : 16U)));
 }
 
-bool gpio_read(struct gpio_pin pin)
+bool takt_gpio_read(struct gpio_pin pin)
 {
-    return (chip_read(address_of(pin.port, GPIO_IDR)) >> pin.number & 1U) != 0;
+    return (takt_chip_read(address_of(pin.port, GPIO_IDR)) >> pin.number & 1U) != 0;
 }

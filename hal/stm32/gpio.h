@@ -15,16 +15,16 @@ struct gpio_pin {
 };
 
 /* The levels of all pins of a port that are outputs: 16 bits. */
-uint32_t gpio_get_output_register(enum gpio_port port);
+uint32_t takt_gpio_get_output_register(enum gpio_port port);
 
 /* Pushes and pulls, starts low. */
-void gpio_set_output(struct gpio_pin pin);
+void takt_gpio_set_output(struct gpio_pin pin);
 /* pulled_up: an open contact reads true. */
-void gpio_set_input(struct gpio_pin pin, bool pulled_up);
+void takt_gpio_set_input(struct gpio_pin pin, bool pulled_up);
 /* Belongs to a peripheral, 0 ... 15 by the data sheet's table of alternate functions. */
-void gpio_set_function(struct gpio_pin pin, unsigned function);
+void takt_gpio_set_function(struct gpio_pin pin, unsigned function);
 
-void gpio_write(struct gpio_pin pin, bool high);
-bool gpio_read(struct gpio_pin pin);
+void takt_gpio_write(struct gpio_pin pin, bool high);
+bool takt_gpio_read(struct gpio_pin pin);
 
 #endif

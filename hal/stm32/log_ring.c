@@ -8,7 +8,7 @@ static void put_text(struct log_ring *ring, const char *text)
         ring->byte[ring->written++ % LOG_RING_MAX] = (uint8_t)*text;
 }
 
-bool log_ring_put(struct log_ring *ring, const char *line)
+bool takt_log_ring_put(struct log_ring *ring, const char *line)
 {
     const uint32_t room = LOG_RING_MAX - (ring->written - ring->taken);
     uint32_t length = sizeof LINE_END - 1;
@@ -29,7 +29,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-size_t log_ring_take(struct log_ring *ring, const uint8_t **bytes, size_t most)
+size_t takt_log_ring_take(struct log_ring *ring, const uint8_t **bytes, size_t most)
 {
     size_t at;
 

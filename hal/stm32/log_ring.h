@@ -12,18 +12,18 @@
 
 struct log_ring {
     uint32_t written, taken; /* bytes so far, wrapping */
-    uint32_t given;          /* of those that are not taken: by the last call of log_ring_take */
-    uint32_t left_out;       /* lines */
+    uint32_t given;    /* of those that are not taken: by the last call of takt_log_ring_take */
+    uint32_t left_out; /* lines */
     uint8_t byte[LOG_RING_MAX];
 };
 
 /* A line without its end; it is given one. False: no room. */
-bool log_ring_put(struct log_ring *ring, const char *line);
+bool takt_log_ring_put(struct log_ring *ring, const char *line);
 
 /*
  * Gives up to most bytes, the oldest first; returns how many. *bytes: where they stand, until the next call. Those behind the
  * end of the ring come with the next call.
  */
-size_t log_ring_take(struct log_ring *ring, const uint8_t **bytes, size_t most);
+size_t takt_log_ring_take(struct log_ring *ring, const uint8_t **bytes, size_t most);
 
 #endif

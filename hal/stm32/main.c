@@ -3,7 +3,7 @@
  * pins, an operator's panel on RS-485, a log, settings in flash.
  *
  * Nothing moves unless everything is as it must be: image, settings, crystal, CAN controller and bus, and no crash
- * before. What is not is told on log and panel (embedded_refuse).
+ * before. What is not is told on log and panel (takt_embedded_refuse).
  */
 #include "chip/board.h"
 #include "chip/peripherals.h"
@@ -66,7 +66,7 @@ static struct board {
 static uint32_t now_us(void *context)
 {
     (void)context;
-    return timers_now_us();
+    return takt_timers_now_us();
 }
 
 static uint32_t now_ns(void *context)
@@ -77,15 +77,15 @@ static uint32_t now_ns(void *context)
 static void reply(void *context, const uint8_t *bytes, size_t length)
 {
     (void)context;
-    if (usart_is_idle(&board.panel))
+    if (takt_usart_is_idle(&board.panel))
         memcpy(board.reply, bytes, length);
-    (void)usart_send(&board.panel, board.reply, length);
+    (void)takt_usart_send(&board.panel, board.reply, length);
 }
 
 static void write_log(void *context, const char *text)
 {
     (void)context;
-    (void)log_ring_put(&board.lines, text);
+    (void)takt_log_ring_put(&board.lines, text);
 }
 
 /* What has been put into the ring, piece by piece. */
@@ -94,11 +94,11 @@ static void send_log(void)
     const uint8_t *bytes;
     size_t length;
 
-    if (!usart_is_idle(&board.log))
+    if (!takt_usart_is_idle(&board.log))
         return;
-    length = log_ring_take(&board.lines, &bytes, USART_SEND_MAX);
+    length = takt_log_ring_take(&board.lines, &bytes, USART_SEND_MAX);
     if (length > 0)
-        (void)usart_send(&board.log, bytes, length);
+        (void)takt_usart_send(&board.log, bytes, length);
 }
 
 /* ---- interrupts ---- */
@@ -106,7 +106,7 @@ static void send_log(void)
 static void take_panel_byte(void *context, uint8_t byte, uint32_t at_us)
 {
     (void)context;
-    embedded_take_byte(&board.embedded, byte, at_us);
+    takt_embedded_take_byte(&board.embedded, byte, at_us);
 }
 
 /* Nobody listens to what comes on the log's line. */
@@ -119,39 +119,39 @@ static void take_log_byte(void *context, uint8_t byte, uint32_t at_us)
 
 static void on_can_sent(void)
 {
-    can_controller_interrupt_sent(&board.can);
+    takt_can_controller_interrupt_sent(&board.can);
 }
 
 static void on_can_received(void)
 {
-    can_controller_interrupt_received(&board.can);
+    takt_can_controller_interrupt_received(&board.can);
 }
 
 static void on_panel(void)
 {
-    usart_interrupt(&board.panel, timers_now_us());
+    takt_usart_interrupt(&board.panel, takt_timers_now_us());
 }
 
 static void on_log(void)
 {
-    usart_interrupt(&board.log, timers_now_us());
+    takt_usart_interrupt(&board.log, takt_timers_now_us());
 }
 
 static struct inputs read_inputs(void)
 {
     struct inputs inputs = inputs_idle();
 
-    inputs.probe_contact = !gpio_read(board_probe);
+    inputs.probe_contact = !takt_gpio_read(board_probe);
     return inputs;
 }
 
 static void write_outputs(void)
 {
-    const struct outputs outputs = embedded_get_outputs(&board.embedded);
+    const struct outputs outputs = takt_embedded_get_outputs(&board.embedded);
 
-    gpio_write(board_spindle, outputs.spindle_speed_rpm != 0.0);
-    gpio_write(board_flood, outputs.flood);
-    gpio_write(board_mist, outputs.mist);
+    takt_gpio_write(board_spindle, outputs.spindle_speed_rpm != 0.0);
+    takt_gpio_write(board_flood, outputs.flood);
+    takt_gpio_write(board_mist, outputs.mist);
 }
 
 static void on_cycle(void)
@@ -159,20 +159,20 @@ static void on_cycle(void)
     const struct inputs inputs = read_inputs();
     static bool late;
 
-    timers_take_cycle();
+    takt_timers_take_cycle();
     board.ticks++;
     if (board.has_steps)
-        step_output_begin(&board.steps);
+        takt_step_output_begin(&board.steps);
     if (board.has_can)
-        can_controller_poll(&board.can);
-    embedded_cycle(&board.embedded, &inputs, late);
+        takt_can_controller_poll(&board.can);
+    takt_embedded_cycle(&board.embedded, &inputs, late);
     write_outputs();
     if (board.has_steps)
-        step_output_end(&board.steps);
-    late = timers_cycle_is_due();
+        takt_step_output_end(&board.steps);
+    late = takt_timers_cycle_is_due();
 }
 
-/* No others are enabled; one that came all the same would end in port_fault. */
+/* No others are enabled; one that came all the same would end in takt_port_fault. */
 STARTUP_INTERRUPTS(board_interrupts, BOARD_INTERRUPTS) = {
     [BOARD_CAN_SENT] = on_can_sent, [BOARD_CAN_RECEIVED] = on_can_received,
     [BOARD_CYCLE] = on_cycle,       [BOARD_LOG] = on_log,
@@ -190,8 +190,8 @@ static void enable(enum board_interrupt interrupt, uint8_t priority)
 /* Why the chip has started. */
 static void look_back(void)
 {
-    board.found.has_crashed = exceptions_take_crash(&board.found.crash);
-    board.found.was_bitten = (chip_read(RCC_RESETS) & RCC_RESETS_WATCHDOG) != 0;
+    board.found.has_crashed = takt_exceptions_take_crash(&board.found.crash);
+    board.found.was_bitten = (takt_chip_read(RCC_RESETS) & RCC_RESETS_WATCHDOG) != 0;
     chip_change(RCC_RESETS, 0, RCC_RESETS_FORGET);
 }
 
@@ -203,38 +203,38 @@ static void open_log(void)
                                         .take = take_log_byte};
 
     chip_change(RCC_APB2ENR, 0, RCC_APB2ENR_USART1);
-    gpio_set_function(board_log_tx, BOARD_USART_FUNCTION);
-    gpio_set_function(board_log_rx, BOARD_USART_FUNCTION);
-    (void)usart_open(&board.log, &config);
+    takt_gpio_set_function(board_log_tx, BOARD_USART_FUNCTION);
+    takt_gpio_set_function(board_log_rx, BOARD_USART_FUNCTION);
+    (void)takt_usart_open(&board.log, &config);
     enable(BOARD_LOG, BOARD_PRIORITY_LOG);
 }
 
 static void open_panel(void)
 {
-    const struct usart_config config = {.base = USART_USART2,
-                                        .clock_hz = board.clock.bus1_hz,
-                                        .bauds = BOARD_PANEL_BAUDS,
-                                        .parity = USART_PARITY_EVEN,
-                                        .has_driver = true,
-                                        .driver = board_panel_driver,
-                                        .gap_us =
-                                            modbus_rtu_gap_us(BOARD_PANEL_BAUDS, BOARD_PANEL_BITS),
-                                        .take = take_panel_byte};
+    const struct usart_config config = {
+        .base = USART_USART2,
+        .clock_hz = board.clock.bus1_hz,
+        .bauds = BOARD_PANEL_BAUDS,
+        .parity = USART_PARITY_EVEN,
+        .has_driver = true,
+        .driver = board_panel_driver,
+        .gap_us = takt_modbus_rtu_gap_us(BOARD_PANEL_BAUDS, BOARD_PANEL_BITS),
+        .take = take_panel_byte};
 
     chip_change(RCC_APB1ENR, 0, RCC_APB1ENR_USART2);
-    gpio_set_function(board_panel_tx, BOARD_USART_FUNCTION);
-    gpio_set_function(board_panel_rx, BOARD_USART_FUNCTION);
-    (void)usart_open(&board.panel, &config);
+    takt_gpio_set_function(board_panel_tx, BOARD_USART_FUNCTION);
+    takt_gpio_set_function(board_panel_rx, BOARD_USART_FUNCTION);
+    (void)takt_usart_open(&board.panel, &config);
     enable(BOARD_PANEL, BOARD_PRIORITY_PANEL);
 }
 
 static void open_pins(void)
 {
-    gpio_set_input(board_probe, true);
-    gpio_set_input(board_emergency, true);
-    gpio_set_output(board_spindle);
-    gpio_set_output(board_flood);
-    gpio_set_output(board_mist);
+    takt_gpio_set_input(board_probe, true);
+    takt_gpio_set_input(board_emergency, true);
+    takt_gpio_set_output(board_spindle);
+    takt_gpio_set_output(board_flood);
+    takt_gpio_set_output(board_mist);
 }
 
 /* False: there are none that are right, and what is wrong is noted. */
@@ -244,25 +244,25 @@ static bool read_settings(struct machine *machine)
     const uint8_t *bytes;
     uint32_t size;
 
-    if (!store_get(&board.store, &bytes, &size)) {
-        diagnostic_set(wrong, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
+    if (!takt_store_get(&board.store, &bytes, &size)) {
+        takt_diagnostic_set(wrong, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
         return false;
     }
-    return settings_read(bytes, size, machine, &board.tables, board.dcf, wrong) &&
-           settings_check_share(machine, &board.tables,
-                                &board.embedded.service.controller.correction, wrong);
+    return takt_settings_read(bytes, size, machine, &board.tables, board.dcf, wrong) &&
+           takt_settings_check_share(machine, &board.tables,
+                                     &board.embedded.service.controller.correction, wrong);
 }
 
 /* Without settings the controller shows itself as the built-in machine, and moves nothing. */
 static void open_settings(struct machine *machine)
 {
     const struct flash_port flash =
-        flash_get_port(&board.flash, (const uint8_t *)(uintptr_t)FLASH_SECTOR_ADDRESS);
+        takt_flash_get_port(&board.flash, (const uint8_t *)(uintptr_t)FLASH_SECTOR_ADDRESS);
 
-    store_open(&board.store, &flash);
+    takt_store_open(&board.store, &flash);
     if (read_settings(machine))
         return;
-    machine_set_default(machine);
+    takt_machine_set_default(machine);
     memset(&board.tables, 0, sizeof board.tables);
     memset(board.dcf, 0, sizeof board.dcf);
 }
@@ -291,11 +291,11 @@ static void open_can(const struct machine *machine)
         return;
     board.found.needs_can = true;
     board.found.clock = board.clock.source;
-    board.found.can_impossible = can_hardware_find_impossible(config.clock_hz, &config.rates);
-    gpio_set_function(board_can_rx, BOARD_CAN_FUNCTION);
-    gpio_set_function(board_can_tx, BOARD_CAN_FUNCTION);
-    (void)can_controller_open(&board.can, &config);
-    board.found.can = can_controller_get_state(&board.can);
+    board.found.can_impossible = takt_can_hardware_find_impossible(config.clock_hz, &config.rates);
+    takt_gpio_set_function(board_can_rx, BOARD_CAN_FUNCTION);
+    takt_gpio_set_function(board_can_tx, BOARD_CAN_FUNCTION);
+    (void)takt_can_controller_open(&board.can, &config);
+    board.found.can = takt_can_controller_get_state(&board.can);
     enable(BOARD_CAN_SENT, BOARD_PRIORITY_CAN);
     enable(BOARD_CAN_RECEIVED, BOARD_PRIORITY_CAN);
 }
@@ -307,8 +307,8 @@ static void open_steps(const struct machine *machine)
             board.found.needs_steps = true;
     }
     board.has_steps =
-        board.found.needs_steps &&
-        step_output_open(&board.steps, BOARD_STEP_PORT, board.clock.timer2_hz, machine->cycle_us);
+        board.found.needs_steps && takt_step_output_open(&board.steps, BOARD_STEP_PORT,
+                                                         board.clock.timer2_hz, machine->cycle_us);
     board.found.has_steps = board.has_steps;
 }
 
@@ -316,7 +316,8 @@ static void open_steps(const struct machine *machine)
 static bool drives_are_off(void *context)
 {
     (void)context;
-    return board.embedded.refused || service_get_state(&board.embedded.service) == PANEL_EMERGENCY;
+    return board.embedded.refused ||
+           takt_service_get_state(&board.embedded.service) == PANEL_EMERGENCY;
 }
 
 /* Where a plan would wait for its start: new settings count from the next one on, and no plan lasts until then. */
@@ -324,7 +325,7 @@ static struct correction_tables *borrow_tables(void *context)
 {
     static_assert(sizeof(struct correction_tables) <= PLAN_QUEUE_MAX, "there is room for them");
     (void)context;
-    return plan_queue_lend(&board_core.plan);
+    return takt_plan_queue_lend(&board_core.plan);
 }
 
 static void open_embedded(const struct machine *machine)
@@ -334,8 +335,9 @@ static void open_embedded(const struct machine *machine)
     const struct embedded_config config = {
         .machine = machine,
         .core = &board_core,
-        .can.port[0] = board.has_can ? can_controller_get_port(&board.can) : no_can_get_port(),
-        .step = step_output_get_port(&board.steps),
+        .can.port[0] =
+            board.has_can ? takt_can_controller_get_port(&board.can) : takt_no_can_get_port(),
+        .step = takt_step_output_get_port(&board.steps),
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
         .correction = &board.tables,
@@ -346,7 +348,7 @@ static void open_embedded(const struct machine *machine)
                  .now_ns = now_ns,
                  .reply = reply,
                  .log = write_log},
-        .settings = settings_upload_open(&board.upload, &board.store, &settings),
+        .settings = takt_settings_upload_open(&board.upload, &board.store, &settings),
         .unit = BOARD_PANEL_UNIT,
         .gap_us = BOARD_PANEL_GAP_US,
         .name = "takt " TAKT_VERSION " on " PERIPHERALS_CHIP,
@@ -354,21 +356,21 @@ static void open_embedded(const struct machine *machine)
 
     for (uint32_t i = 0; i < TOOLS_MAX; i++)
         board.tools[i].number = i + 1;
-    embedded_init(&board.embedded, &config);
+    takt_embedded_init(&board.embedded, &config);
 }
 
 /* All problems are logged; the first is the alarm. */
-static void judge(void)
+static void verifier(void)
 {
     struct diagnostic problem;
     unsigned at = 0;
 
-    while (findings_next(&board.found, &at, &problem)) {
+    while (takt_findings_next(&board.found, &at, &problem)) {
         char text[DIAGNOSTIC_TEXT_MAX];
 
-        (void)diagnostic_text(&problem, text);
+        (void)takt_diagnostic_text(&problem, text);
         write_log(NULL, text);
-        embedded_refuse(&board.embedded, &problem);
+        takt_embedded_refuse(&board.embedded, &problem);
     }
 }
 
@@ -382,21 +384,21 @@ static void start(void)
     struct machine machine; /* the controller has a copy */
 
     look_back();
-    clock_start(&board.clock, BOARD_CRYSTAL_HZ);
-    timers_start_clock(timer_hz());
-    (void)watchdog_start(FLASH_WATCHDOG_MS);
-    (void)image_is_sound(&board.found.image);
+    takt_clock_start(&board.clock, BOARD_CRYSTAL_HZ);
+    takt_timers_start_clock(timer_hz());
+    (void)takt_watchdog_start(FLASH_WATCHDOG_MS);
+    (void)takt_image_is_sound(&board.found.image);
     open_pins();
     open_log();
     open_settings(&machine);
     open_can(&machine);
     open_steps(&machine);
     open_embedded(&machine);
-    judge();
+    verifier();
     open_panel();
-    (void)watchdog_start(BOARD_WATCHDOG_MS);
+    (void)takt_watchdog_start(BOARD_WATCHDOG_MS);
     cortex_set_priority(BOARD_CYCLE, BOARD_PRIORITY_CYCLE);
-    timers_start_cycle(timer_hz(), machine.cycle_us);
+    takt_timers_start_cycle(timer_hz(), machine.cycle_us);
     cortex_enable_interrupt(BOARD_CYCLE);
 }
 
@@ -405,14 +407,14 @@ static void start(void)
 /* The button holds the emergency stop in; letting it go releases it, and RESET leads on. */
 static void follow_button(void)
 {
-    const bool pressed = gpio_read(board_emergency);
+    const bool pressed = takt_gpio_read(board_emergency);
     const struct panel_order order = {.count = 1,
                                       .item = {{REGISTER_EMERGENCY_STOP, pressed ? 1 : 0}}};
 
     if (pressed == board.pressed || board.embedded.refused)
         return;
     cortex_lock(NULL);
-    (void)service_order(&board.embedded.service, &order);
+    (void)takt_service_order(&board.embedded.service, &order);
     cortex_unlock(NULL);
     board.pressed = pressed;
 }
@@ -423,7 +425,7 @@ static void feed_watchdog(void)
     if (board.ticks == board.fed)
         return;
     board.fed = board.ticks;
-    watchdog_feed();
+    takt_watchdog_feed();
 }
 
 int main(void)
@@ -431,10 +433,10 @@ int main(void)
     start();
     for (;;) {
         follow_button();
-        embedded_background(&board.embedded);
-        usart_poll(&board.panel, timers_now_us());
+        takt_embedded_background(&board.embedded);
+        takt_usart_poll(&board.panel, takt_timers_now_us());
         send_log();
-        usart_poll(&board.log, timers_now_us());
+        takt_usart_poll(&board.log, takt_timers_now_us());
         feed_watchdog();
     }
 }

@@ -16,7 +16,7 @@ static bool receive(void *context, struct can_frame *frame)
     return false;
 }
 
-struct can_port no_can_get_port(void)
+struct can_port takt_no_can_get_port(void)
 {
     return (struct can_port){.send = send, .receive = receive, .context = NULL};
 }

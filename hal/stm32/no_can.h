@@ -6,6 +6,6 @@
 
 #include "hal/can.h"
 
-struct can_port no_can_get_port(void);
+struct can_port takt_no_can_get_port(void);
 
 #endif

@@ -27,41 +27,41 @@
 #define BDTR_BREAK (1U << 12) /* by a low level */
 #define BDTR_ON    (1U << 15)
 
-uint32_t pwm_open(uint32_t timer_hz, uint32_t pulses_hz)
+uint32_t takt_pwm_open(uint32_t timer_hz, uint32_t pulses_hz)
 {
     const uint32_t counts = timer_hz / pulses_hz;
 
     chip_change(RCC_APB2ENR, 0, RCC_APB2ENR_TIM1);
-    chip_write(CR1, CR1_PRELOAD);
-    chip_write(PSC, 0);
-    chip_write(ARR, counts - 1U);
-    chip_write(CCMR1, CCMR1_PWM | CCMR1_LATER);
-    chip_write(CCR1, 0);
-    chip_write(CCR2, 0);
-    chip_write(EGR, EGR_UPDATE);
-    chip_write(CCER, CCER_BOTH);
-    chip_write(BDTR, BDTR_IDLE | BDTR_BREAK);
+    takt_chip_write(CR1, CR1_PRELOAD);
+    takt_chip_write(PSC, 0);
+    takt_chip_write(ARR, counts - 1U);
+    takt_chip_write(CCMR1, CCMR1_PWM | CCMR1_LATER);
+    takt_chip_write(CCR1, 0);
+    takt_chip_write(CCR2, 0);
+    takt_chip_write(EGR, EGR_UPDATE);
+    takt_chip_write(CCER, CCER_BOTH);
+    takt_chip_write(BDTR, BDTR_IDLE | BDTR_BREAK);
     chip_change(CR1, 0, CR1_ON);
     return counts;
 }
 
-void pwm_arm(bool on)
+void takt_pwm_arm(bool on)
 {
     if (on)
-        chip_write(SR, ~SR_BREAK);
-    chip_write(BDTR, BDTR_IDLE | BDTR_BREAK | (on ? BDTR_ON : 0));
+        takt_chip_write(SR, ~SR_BREAK);
+    takt_chip_write(BDTR, BDTR_IDLE | BDTR_BREAK | (on ? BDTR_ON : 0));
 }
 
-bool pwm_is_broken(void)
+bool takt_pwm_is_broken(void)
 {
-    return (chip_read(SR) & SR_BREAK) != 0;
+    return (takt_chip_read(SR) & SR_BREAK) != 0;
 }
 
 /* The pause first: a pulse may begin between the two. */
-void pwm_set(int32_t counts)
+void takt_pwm_set(int32_t counts)
 {
     const bool up = counts > 0;
 
-    chip_write(up ? CCR2 : CCR1, 0);
-    chip_write(up ? CCR1 : CCR2, (uint32_t)(up ? counts : -counts));
+    takt_chip_write(up ? CCR2 : CCR1, 0);
+    takt_chip_write(up ? CCR1 : CCR2, (uint32_t)(up ? counts : -counts));
 }

@@ -12,15 +12,15 @@
 #include <stdint.h>
 
 /* timer_hz: of the timers on APB2. Returns the counts of a pulse and its pause, which are those of the whole torque. */
-uint32_t pwm_open(uint32_t timer_hz, uint32_t pulses_hz);
+uint32_t takt_pwm_open(uint32_t timer_hz, uint32_t pulses_hz);
 
 /* The channels lead to the pins, or they are low. Armed anew a break is forgotten. */
-void pwm_arm(bool on);
+void takt_pwm_arm(bool on);
 
 /* A break has been since they were armed. */
-bool pwm_is_broken(void);
+bool takt_pwm_is_broken(void);
 
 /* From the next pulse on. counts: up, or if less than 0 down; at most those of the whole torque. */
-void pwm_set(int32_t counts);
+void takt_pwm_set(int32_t counts);
 
 #endif

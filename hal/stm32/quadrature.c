@@ -30,32 +30,32 @@
 
 #define COUNTS_MAX 0xFFFFU
 
-void quadrature_open(struct quadrature *quadrature)
+void takt_quadrature_open(struct quadrature *quadrature)
 {
     *quadrature = (struct quadrature){0};
     chip_change(RCC_APB1ENR, 0, RCC_APB1ENR_TIM3);
-    chip_write(CR1, 0);
-    chip_write(PSC, 0);
-    chip_write(ARR, COUNTS_MAX);
-    chip_write(SMCR, SMCR_BOTH);
-    chip_write(CCMR1, CCMR_BOTH);
-    chip_write(CCMR2, CCMR_BOTH);
-    chip_write(EGR, EGR_UPDATE);
-    chip_write(CNT, 0);
-    chip_write(CCER, CCER_EDGES);
-    chip_write(SR, 0);
-    chip_write(CR1, CR1_ON);
+    takt_chip_write(CR1, 0);
+    takt_chip_write(PSC, 0);
+    takt_chip_write(ARR, COUNTS_MAX);
+    takt_chip_write(SMCR, SMCR_BOTH);
+    takt_chip_write(CCMR1, CCMR_BOTH);
+    takt_chip_write(CCMR2, CCMR_BOTH);
+    takt_chip_write(EGR, EGR_UPDATE);
+    takt_chip_write(CNT, 0);
+    takt_chip_write(CCER, CCER_EDGES);
+    takt_chip_write(SR, 0);
+    takt_chip_write(CR1, CR1_ON);
 }
 
-/* Of two counts of 16 bits, which are less than half a round apart. */
+/* Way between two counts of 16 bits, which are less than half a round apart. */
 static int64_t way(uint16_t from, uint16_t to)
 {
     return (int16_t)(uint16_t)(to - from);
 }
 
-int64_t quadrature_read(struct quadrature *quadrature)
+int64_t takt_quadrature_read(struct quadrature *quadrature)
 {
-    const uint16_t now = (uint16_t)chip_read(CNT);
+    const uint16_t now = (uint16_t)takt_chip_read(CNT);
 
     quadrature->counts += way(quadrature->seen, now);
     quadrature->seen = now;
@@ -63,11 +63,12 @@ int64_t quadrature_read(struct quadrature *quadrature)
 }
 
 /* Reading what was captured takes the flag back. */
-bool quadrature_take_edge(struct quadrature *quadrature, enum quadrature_edge edge, int64_t *counts)
+bool takt_quadrature_take_edge(struct quadrature *quadrature, enum quadrature_edge edge,
+                               int64_t *counts)
 {
-    if ((chip_read(SR) & SR_EDGE(edge)) == 0)
+    if ((takt_chip_read(SR) & SR_EDGE(edge)) == 0)
         return false;
-    *counts =
-        quadrature->counts + way(quadrature->seen, (uint16_t)chip_read(CCR3 + 4U * (uint32_t)edge));
+    *counts = quadrature->counts +
+              way(quadrature->seen, (uint16_t)takt_chip_read(CCR3 + 4U * (uint32_t)edge));
     return true;
 }

@@ -18,16 +18,16 @@ struct quadrature {
 };
 
 /* Counts from 0. */
-void quadrature_open(struct quadrature *quadrature);
+void takt_quadrature_open(struct quadrature *quadrature);
 
-/* So many counts up since it was opened. */
-int64_t quadrature_read(struct quadrature *quadrature);
+/* Counts up since it was opened. */
+int64_t takt_quadrature_read(struct quadrature *quadrature);
 
 /*
  * Where the last edge was, told once: the rising one of the index pulse, both of the switch. False: there was none. To be
  * asked as often as it is read.
  */
-bool quadrature_take_edge(struct quadrature *quadrature, enum quadrature_edge edge,
-                          int64_t *counts);
+bool takt_quadrature_take_edge(struct quadrature *quadrature, enum quadrature_edge edge,
+                               int64_t *counts);
 
 #endif

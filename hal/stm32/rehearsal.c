@@ -77,7 +77,7 @@ static void add_number(struct line *line, uint64_t number, unsigned base, unsign
 static void end_line(struct line *line)
 {
     memcpy(line->text + line->length, "\r\n", 3);
-    usart_shout(&rehearsal.log, line->text);
+    takt_usart_shout(&rehearsal.log, line->text);
     line->length = 0;
 }
 
@@ -104,8 +104,8 @@ static void open_log(void)
                                         .take = ignore};
 
     chip_change(RCC_APB2ENR, 0, RCC_APB2ENR_USART1);
-    gpio_set_function(board_log_tx, BOARD_USART_FUNCTION);
-    (void)usart_open(&rehearsal.log, &config);
+    takt_gpio_set_function(board_log_tx, BOARD_USART_FUNCTION);
+    (void)takt_usart_open(&rehearsal.log, &config);
 }
 
 static void say_program(void)
@@ -140,18 +140,18 @@ static void open_controller(void)
 {
     struct controller_config config = {
         .machine = &rehearsal.machine,
-        .can.port[0] = no_can_get_port(),
+        .can.port[0] = takt_no_can_get_port(),
         .step = {.pulse = count_pulse},
         .reader = &beside.reader,
         .parameters = &beside.parameters,
     };
 
-    machine_set_default(&rehearsal.machine);
+    takt_machine_set_default(&rehearsal.machine);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         rehearsal.machine.axis[i].drive_type = MACHINE_DRIVE_STEP;
-    parameters_clear(&beside.parameters);
-    source_open_text(&config.source, &rehearsal.text, program, sizeof program - 1);
-    controller_init(&rehearsal.controller, &config);
+    takt_parameters_clear(&beside.parameters);
+    takt_source_open_text(&config.source, &rehearsal.text, program, sizeof program - 1);
+    takt_controller_init(&rehearsal.controller, &config);
 }
 
 static void take_record(const struct cycle_record *record)
@@ -160,7 +160,7 @@ static void take_record(const struct cycle_record *record)
         return;
     rehearsal.cycles++;
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        rehearsal.digest = fnv_add_double(rehearsal.digest, record->set.at[i]);
+        rehearsal.digest = takt_fnv_add_double(rehearsal.digest, record->set.at[i]);
 }
 
 static void run(void)
@@ -168,10 +168,10 @@ static void run(void)
     const struct inputs inputs = inputs_idle();
 
     rehearsal.digest = FNV_START;
-    while (controller_get_state(&rehearsal.controller) < CONTROLLER_COMPLETED) {
-        controller_background(&rehearsal.controller);
-        controller_cycle(&rehearsal.controller, &inputs);
-        take_record(controller_get_record(&rehearsal.controller));
+    while (takt_controller_get_state(&rehearsal.controller) < CONTROLLER_COMPLETED) {
+        takt_controller_background(&rehearsal.controller);
+        takt_controller_cycle(&rehearsal.controller, &inputs);
+        take_record(takt_controller_get_record(&rehearsal.controller));
     }
 }
 
@@ -179,10 +179,10 @@ static void say_outcome(void)
 {
     struct line line = {.length = 0};
 
-    if (controller_get_state(&rehearsal.controller) != CONTROLLER_COMPLETED) {
+    if (takt_controller_get_state(&rehearsal.controller) != CONTROLLER_COMPLETED) {
         char text[DIAGNOSTIC_TEXT_MAX];
 
-        (void)diagnostic_text(controller_get_fault(&rehearsal.controller), text);
+        (void)takt_diagnostic_text(takt_controller_get_fault(&rehearsal.controller), text);
         say(text);
         return;
     }
@@ -216,7 +216,7 @@ static void say_crash(const struct crash_record *crash)
     struct line line = {.length = 0};
 
     add_text(&line, "crashed: ");
-    add_text(&line, crash_name(crash->cause));
+    add_text(&line, takt_crash_name(crash->cause));
     add_text(&line, " at ");
     add_number(&line, crash->address, 16, 8);
     add_text(&line, ", status ");
@@ -237,12 +237,12 @@ int main(void)
     struct diagnostic damage;
     struct crash_record crash;
 
-    clock_start(&rehearsal.clock, BOARD_CRYSTAL_HZ);
+    takt_clock_start(&rehearsal.clock, BOARD_CRYSTAL_HZ);
     open_log();
     say("takt rehearsal on " PERIPHERALS_CHIP);
     say(clocks[rehearsal.clock.source]);
-    say(image_is_sound(&damage) ? "the image is sound" : "the image is damaged");
-    if (exceptions_take_crash(&crash)) {
+    say(takt_image_is_sound(&damage) ? "the image is sound" : "the image is damaged");
+    if (takt_exceptions_take_crash(&crash)) {
         say_crash(&crash);
         stay();
     }

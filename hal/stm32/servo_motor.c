@@ -16,7 +16,7 @@ static double encoder_mm(const struct servo_motor *m, int64_t counts)
 static void read_encoder(struct servo_motor *m)
 {
     m->counts_before = m->counts;
-    m->counts = quadrature_read(&m->encoder);
+    m->counts = takt_quadrature_read(&m->encoder);
 }
 
 static struct motor_latch latch_at(const struct servo_motor *m, int64_t counts)
@@ -28,7 +28,7 @@ static struct motor_latch latch_at(const struct servo_motor *m, int64_t counts)
 /* width = torque / whole torque */
 static int32_t width_of(const struct servo_motor *m, double torque_mm_s2)
 {
-    const double counts = maths_round(torque_mm_s2 * m->counts_per_mm_s2);
+    const double counts = takt_maths_round(torque_mm_s2 * m->counts_per_mm_s2);
 
     return (int32_t)maths_clamp(counts, -m->whole_counts, m->whole_counts);
 }
@@ -38,7 +38,7 @@ static uint32_t read_switches(const struct servo_motor *m)
     uint32_t inputs = 0;
 
     for (unsigned i = 0; i < MOTOR_INPUTS; i++)
-        inputs |= gpio_read(m->config.switches[i]) ? 1U << i : 0;
+        inputs |= takt_gpio_read(m->config.switches[i]) ? 1U << i : 0;
     return inputs;
 }
 
@@ -48,7 +48,7 @@ static void latch_switches(struct servo_motor *m)
     const uint32_t inputs = read_switches(m), changed = inputs ^ m->sense.inputs;
     int64_t counts = m->counts;
 
-    (void)quadrature_take_edge(&m->encoder, QUADRATURE_SWITCH, &counts);
+    (void)takt_quadrature_take_edge(&m->encoder, QUADRATURE_SWITCH, &counts);
     for (unsigned i = 0; i < MOTOR_INPUTS; i++) {
         if ((changed >> i & 1U) != 0)
             m->sense.edge[i] = latch_at(m, i == HOME_BIT ? counts : m->counts);
@@ -60,7 +60,7 @@ static void latch_index(struct servo_motor *m)
 {
     int64_t counts;
 
-    if (!quadrature_take_edge(&m->encoder, QUADRATURE_INDEX, &counts))
+    if (!takt_quadrature_take_edge(&m->encoder, QUADRATURE_INDEX, &counts))
         return;
     m->sense.pulses++;
     m->sense.pulse = latch_at(m, counts);
@@ -69,10 +69,10 @@ static void latch_index(struct servo_motor *m)
 /* The watchdog ends it if there is no timer. */
 static void wait_for_step(struct servo_motor *m)
 {
-    m->is_late = m->is_late || timers_cycle_is_due();
-    while (!timers_cycle_is_due()) {
+    m->is_late = m->is_late || takt_timers_cycle_is_due();
+    while (!takt_timers_cycle_is_due()) {
     }
-    timers_take_cycle();
+    takt_timers_take_cycle();
 }
 
 static double turn_motor(void *context, double torque_mm_s2, double step_s)
@@ -80,7 +80,7 @@ static double turn_motor(void *context, double torque_mm_s2, double step_s)
     struct servo_motor *m = context;
 
     (void)step_s;
-    pwm_set(width_of(m, torque_mm_s2));
+    takt_pwm_set(width_of(m, torque_mm_s2));
     wait_for_step(m);
     read_encoder(m);
     latch_switches(m);
@@ -98,37 +98,37 @@ static void sense_motor(void *context, uint32_t cycle_ns, struct motor_sense *se
     *sense = m->sense;
 }
 
-void servo_motor_open(struct servo_motor *motor, const struct servo_motor_config *config)
+void takt_servo_motor_open(struct servo_motor *motor, const struct servo_motor_config *config)
 {
     struct servo_motor *m = motor;
 
     memset(m, 0, sizeof *m);
     m->config = *config;
     m->sense.torque_ratio = 1;
-    quadrature_open(&m->encoder);
-    m->whole_counts = (int32_t)pwm_open(config->timer_hz, config->pulses_hz);
+    takt_quadrature_open(&m->encoder);
+    m->whole_counts = (int32_t)takt_pwm_open(config->timer_hz, config->pulses_hz);
     m->counts_per_mm_s2 = m->whole_counts / config->whole_mm_s2;
     m->sense.inputs = read_switches(m);
 }
 
-struct motor_port servo_motor_get_port(struct servo_motor *motor)
+struct motor_port takt_servo_motor_get_port(struct servo_motor *motor)
 {
     return (struct motor_port){.turn = turn_motor, .sense = sense_motor, .context = motor};
 }
 
-void servo_motor_arm(struct servo_motor *motor, bool on)
+void takt_servo_motor_arm(struct servo_motor *motor, bool on)
 {
     if (on != motor->is_armed)
-        pwm_arm(on);
+        takt_pwm_arm(on);
     motor->is_armed = on;
 }
 
-bool servo_motor_has_failed(const struct servo_motor *motor)
+bool takt_servo_motor_has_failed(const struct servo_motor *motor)
 {
-    return motor->is_armed && pwm_is_broken();
+    return motor->is_armed && takt_pwm_is_broken();
 }
 
-bool servo_motor_take_late(struct servo_motor *motor)
+bool takt_servo_motor_take_late(struct servo_motor *motor)
 {
     const bool was = motor->is_late;
 

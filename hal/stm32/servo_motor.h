@@ -30,18 +30,18 @@ struct servo_motor {
 };
 
 /* Its pins are set. The torque is 0, and not armed. */
-void servo_motor_open(struct servo_motor *motor, const struct servo_motor_config *config);
+void takt_servo_motor_open(struct servo_motor *motor, const struct servo_motor_config *config);
 
 /* motor must stay. turn waits for the timer. */
-struct motor_port servo_motor_get_port(struct servo_motor *motor);
+struct motor_port takt_servo_motor_get_port(struct servo_motor *motor);
 
 /* The drive wants torque. */
-void servo_motor_arm(struct servo_motor *motor, bool on);
+void takt_servo_motor_arm(struct servo_motor *motor, bool on);
 
 /* The power stage has taken it away since. */
-bool servo_motor_has_failed(const struct servo_motor *motor);
+bool takt_servo_motor_has_failed(const struct servo_motor *motor);
 
 /* A step has not ended before the timer's; told once. */
-bool servo_motor_take_late(struct servo_motor *motor);
+bool takt_servo_motor_take_late(struct servo_motor *motor);
 
 #endif

@@ -49,8 +49,8 @@ static uint32_t address_of(const void *memory)
 static void set_pins(enum gpio_port port)
 {
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
-        gpio_set_output((struct gpio_pin){port, (uint8_t)(BOARD_STEP_PIN + axis)});
-        gpio_set_output((struct gpio_pin){port, (uint8_t)(BOARD_DIRECTION_PIN + axis)});
+        takt_gpio_set_output((struct gpio_pin){port, (uint8_t)(BOARD_STEP_PIN + axis)});
+        takt_gpio_set_output((struct gpio_pin){port, (uint8_t)(BOARD_DIRECTION_PIN + axis)});
     }
 }
 
@@ -58,16 +58,16 @@ static bool set_stream(const struct step_output *s, enum gpio_port port)
 {
     chip_change(RCC_AHB1ENR, 0, RCC_AHB1ENR_DMA2);
     peripherals_route_steps();
-    chip_write(STREAM_CR, 0);
+    takt_chip_write(STREAM_CR, 0);
     if (!chip_wait(STREAM_CR, CR_ON, 0, OFF_READS))
         return false;
-    chip_write(LIFCR, LIFCR_STREAM_1);
-    chip_write(STREAM_NDTR, s->slots.slots);
-    chip_write(STREAM_PAR, gpio_get_output_register(port));
-    chip_write(STREAM_M0AR, address_of(s->levels[0]));
-    chip_write(STREAM_M1AR, address_of(s->levels[1]));
-    chip_write(STREAM_CR, CR_TO_PORT | CR_CIRCULAR | CR_STEP_MEMORY | CR_16_BITS | CR_URGENT |
-                              CR_TWO_BUFFERS | STEP_REQUEST);
+    takt_chip_write(LIFCR, LIFCR_STREAM_1);
+    takt_chip_write(STREAM_NDTR, s->slots.slots);
+    takt_chip_write(STREAM_PAR, takt_gpio_get_output_register(port));
+    takt_chip_write(STREAM_M0AR, address_of(s->levels[0]));
+    takt_chip_write(STREAM_M1AR, address_of(s->levels[1]));
+    takt_chip_write(STREAM_CR, CR_TO_PORT | CR_CIRCULAR | CR_STEP_MEMORY | CR_16_BITS | CR_URGENT |
+                                   CR_TWO_BUFFERS | STEP_REQUEST);
     chip_change(STREAM_CR, 0, CR_ON);
     return true;
 }
@@ -75,18 +75,18 @@ static bool set_stream(const struct step_output *s, enum gpio_port port)
 static void set_timer(uint32_t timer_hz)
 {
     chip_change(RCC_APB2ENR, 0, RCC_APB2ENR_TIM8);
-    chip_write(CR1, 0);
-    chip_write(PSC, 0);
-    chip_write(ARR, (uint32_t)((uint64_t)timer_hz * STEP_SLOT_NS / NS_PER_S) - 1U);
-    chip_write(EGR, EGR_UPDATE);
-    chip_write(DIER, DIER_REQUEST);
+    takt_chip_write(CR1, 0);
+    takt_chip_write(PSC, 0);
+    takt_chip_write(ARR, (uint32_t)((uint64_t)timer_hz * STEP_SLOT_NS / NS_PER_S) - 1U);
+    takt_chip_write(EGR, EGR_UPDATE);
+    takt_chip_write(DIER, DIER_REQUEST);
 }
 
-bool step_output_open(struct step_output *s, enum gpio_port port, uint32_t timer_hz,
-                      uint32_t cycle_us)
+bool takt_step_output_open(struct step_output *s, enum gpio_port port, uint32_t timer_hz,
+                           uint32_t cycle_us)
 {
     memset(s, 0, sizeof *s);
-    if (!step_slots_init(&s->slots, cycle_us))
+    if (!takt_step_slots_init(&s->slots, cycle_us))
         return false;
     set_pins(port);
     set_timer(timer_hz);
@@ -96,9 +96,9 @@ bool step_output_open(struct step_output *s, enum gpio_port port, uint32_t timer
 /* In the buffer that is not being sent. They change at the start of a cycle; all of the controller's is behind that. */
 static void begin_slots(struct step_output *s)
 {
-    const bool second = (chip_read(STREAM_CR) & CR_SECOND) != 0;
+    const bool second = (takt_chip_read(STREAM_CR) & CR_SECOND) != 0;
 
-    step_slots_begin(&s->slots, s->levels[second ? 0 : 1]);
+    takt_step_slots_begin(&s->slots, s->levels[second ? 0 : 1]);
 }
 
 static bool pulse(void *context, const struct step_pulse *pulse)
@@ -107,30 +107,30 @@ static bool pulse(void *context, const struct step_pulse *pulse)
 
     if (s->slots.word == NULL)
         begin_slots(s);
-    return step_slots_add(&s->slots, pulse);
+    return takt_step_slots_add(&s->slots, pulse);
 }
 
-struct step_port step_output_get_port(struct step_output *s)
+struct step_port takt_step_output_get_port(struct step_output *s)
 {
     return (struct step_port){.pulse = pulse, .context = s};
 }
 
 /* The timer begins with the first cycle and keeps step with the others: all clocks come from one. */
-void step_output_begin(struct step_output *s)
+void takt_step_output_begin(struct step_output *s)
 {
     if (s->runs)
         return;
     s->runs = true;
-    chip_write(CR1, CR1_ON);
+    takt_chip_write(CR1, CR1_ON);
 }
 
-void step_output_end(struct step_output *s)
+void takt_step_output_end(struct step_output *s)
 {
     const uint16_t *word;
 
     if (s->slots.word == NULL)
         begin_slots(s);
     word = s->slots.word;
-    step_slots_take(&s->slots);
+    takt_step_slots_take(&s->slots);
     peripherals_write_back(word, s->slots.slots * sizeof *word);
 }

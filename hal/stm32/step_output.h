@@ -18,14 +18,14 @@ struct step_output {
 };
 
 /* The port's pins, outputs and low. timer_hz: of the timers on APB2. False: no such cycle. */
-bool step_output_open(struct step_output *s, enum gpio_port port, uint32_t timer_hz,
-                      uint32_t cycle_us);
+bool takt_step_output_open(struct step_output *s, enum gpio_port port, uint32_t timer_hz,
+                           uint32_t cycle_us);
 
 /* For hal/step.h. No encoders. */
-struct step_port step_output_get_port(struct step_output *s);
+struct step_port takt_step_output_get_port(struct step_output *s);
 
 /* At the start of every control cycle, and at its end. */
-void step_output_begin(struct step_output *s);
-void step_output_end(struct step_output *s);
+void takt_step_output_begin(struct step_output *s);
+void takt_step_output_end(struct step_output *s);
 
 #endif

@@ -7,7 +7,7 @@
 #define DIRECTION_PINS 8U
 #define STEPS_MASK     0xFFU
 
-bool step_slots_init(struct step_slots *s, uint32_t cycle_us)
+bool takt_step_slots_init(struct step_slots *s, uint32_t cycle_us)
 {
     memset(s, 0, sizeof *s);
     s->slots = cycle_us * NS_PER_US / STEP_SLOT_NS;
@@ -31,7 +31,7 @@ static void change_level(struct step_slots *s, unsigned slot, unsigned pins)
     s->level ^= (uint16_t)pins;
 }
 
-void step_slots_begin(struct step_slots *s, uint16_t *word)
+void takt_step_slots_begin(struct step_slots *s, uint16_t *word)
 {
     uint16_t overhang[STEP_SLOTS_OVERHANG];
 
@@ -69,7 +69,7 @@ static bool add_axis(struct step_slots *s, unsigned axis, bool backwards, unsign
     return true;
 }
 
-bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse)
+bool takt_step_slots_add(struct step_slots *s, const struct step_pulse *pulse)
 {
     const unsigned slot = pulse->time_ns / STEP_SLOT_NS + STEP_SLOTS_DELAY;
     bool good = true;
@@ -81,7 +81,7 @@ bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse)
     return good;
 }
 
-void step_slots_take(struct step_slots *s)
+void takt_step_slots_take(struct step_slots *s)
 {
     s->word = NULL;
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++)

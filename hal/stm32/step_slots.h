@@ -31,15 +31,15 @@ struct step_slots {
 };
 
 /* False: such a cycle is not possible: at least 10 us, at most 2 ms, whole slots. */
-bool step_slots_init(struct step_slots *s, uint32_t cycle_us);
+bool takt_step_slots_init(struct step_slots *s, uint32_t cycle_us);
 
 /* Begins the cycle to come, in memory for as many words as it has slots, which nobody else uses until it is taken. */
-void step_slots_begin(struct step_slots *s, uint16_t *word);
+void takt_step_slots_begin(struct step_slots *s, uint16_t *word);
 
 /* For a cycle that has begun. False: no room in it. Pins 0 to 5 are steps, 8 to 13 directions of X Y Z A B C. */
-bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse);
+bool takt_step_slots_add(struct step_slots *s, const struct step_pulse *pulse);
 
 /* Ends the cycle: its memory has the levels. All other pins of the port are low. */
-void step_slots_take(struct step_slots *s);
+void takt_step_slots_take(struct step_slots *s);
 
 #endif

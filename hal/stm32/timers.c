@@ -23,39 +23,39 @@
 
 static void start(uint32_t timer, uint32_t timer_hz, uint32_t period)
 {
-    chip_write(timer + CR1, 0);
-    chip_write(timer + PSC, timer_hz / HZ_PER_MHZ - 1U);
-    chip_write(timer + ARR, period);
-    chip_write(timer + EGR, EGR_UPDATE);
-    chip_write(timer + SR, 0);
+    takt_chip_write(timer + CR1, 0);
+    takt_chip_write(timer + PSC, timer_hz / HZ_PER_MHZ - 1U);
+    takt_chip_write(timer + ARR, period);
+    takt_chip_write(timer + EGR, EGR_UPDATE);
+    takt_chip_write(timer + SR, 0);
 }
 
-void timers_start_clock(uint32_t timer_hz)
+void takt_timers_start_clock(uint32_t timer_hz)
 {
     chip_change(RCC_APB1ENR, 0, RCC_APB1ENR_TIM5);
     start(TIM5, timer_hz, UINT32_MAX);
-    chip_write(TIM5 + CR1, CR1_ON);
+    takt_chip_write(TIM5 + CR1, CR1_ON);
 }
 
-uint32_t timers_now_us(void)
+uint32_t takt_timers_now_us(void)
 {
-    return chip_read(TIM5 + CNT);
+    return takt_chip_read(TIM5 + CNT);
 }
 
-void timers_start_cycle(uint32_t timer_hz, uint32_t cycle_us)
+void takt_timers_start_cycle(uint32_t timer_hz, uint32_t cycle_us)
 {
     chip_change(RCC_APB1ENR, 0, RCC_APB1ENR_TIM2);
     start(TIM2, timer_hz, cycle_us - 1U);
-    chip_write(TIM2 + DIER, DIER_UPDATE);
-    chip_write(TIM2 + CR1, CR1_ON);
+    takt_chip_write(TIM2 + DIER, DIER_UPDATE);
+    takt_chip_write(TIM2 + CR1, CR1_ON);
 }
 
-void timers_take_cycle(void)
+void takt_timers_take_cycle(void)
 {
-    chip_write(TIM2 + SR, ~SR_UPDATE);
+    takt_chip_write(TIM2 + SR, ~SR_UPDATE);
 }
 
-bool timers_cycle_is_due(void)
+bool takt_timers_cycle_is_due(void)
 {
-    return (chip_read(TIM2 + SR) & SR_UPDATE) != 0;
+    return (takt_chip_read(TIM2 + SR) & SR_UPDATE) != 0;
 }

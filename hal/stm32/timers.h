@@ -8,16 +8,16 @@
 #include <stdint.h>
 
 /* timer_hz: of the timers on APB1, a multiple of 1 MHz. */
-void timers_start_clock(uint32_t timer_hz);
-uint32_t timers_now_us(void);
+void takt_timers_start_clock(uint32_t timer_hz);
+uint32_t takt_timers_now_us(void);
 
 /* An interrupt every cycle_us, from now on. */
-void timers_start_cycle(uint32_t timer_hz, uint32_t cycle_us);
+void takt_timers_start_cycle(uint32_t timer_hz, uint32_t cycle_us);
 
 /* At the start of that interrupt. */
-void timers_take_cycle(void);
+void takt_timers_take_cycle(void);
 
 /* The next cycle is due already. */
-bool timers_cycle_is_due(void);
+bool takt_timers_cycle_is_due(void);
 
 #endif

@@ -8,7 +8,7 @@
 /* Divider of a clock at 16 samples a bit. */
 #define DIVIDER_MIN 16U
 #define DIVIDER_MAX 0xFFFFU
-#define ERROR_MAX   50U /* one part of so many: 2 % */
+#define ERROR_MAX   50U /* one part of this many: 2 % */
 
 /* Steps at one time: the longest frame, and what comes meanwhile. */
 #define SERVED_MAX (USART_SEND_MAX + 16U)
@@ -24,7 +24,7 @@ static uint32_t address_of(const struct usart *u, uint32_t offset)
 static void drive(const struct usart *u, bool on)
 {
     if (u->config.has_driver)
-        gpio_write(u->config.driver, on);
+        takt_gpio_write(u->config.driver, on);
 }
 
 static bool rate_is_possible(uint32_t clock_hz, uint32_t divider, uint32_t bauds)
@@ -45,7 +45,7 @@ static uint32_t control_of(enum usart_parity parity)
            (parity == USART_PARITY_ODD ? USART_CR1_ODD : 0);
 }
 
-bool usart_open(struct usart *u, const struct usart_config *config)
+bool takt_usart_open(struct usart *u, const struct usart_config *config)
 {
     const uint32_t divider =
         config->bauds > 0 ? (config->clock_hz + config->bauds / 2) / config->bauds : 0;
@@ -55,23 +55,23 @@ bool usart_open(struct usart *u, const struct usart_config *config)
     if (divider == 0 || !rate_is_possible(config->clock_hz, divider, config->bauds))
         return false;
     if (config->has_driver)
-        gpio_set_output(config->driver);
-    chip_write(address_of(u, USART_CR1), 0);
-    chip_write(address_of(u, USART_BRR), divider);
-    chip_write(address_of(u, USART_CR2), 0);
-    chip_write(address_of(u, USART_CR3), 0);
-    chip_write(address_of(u, USART_CR1), control_of(config->parity) | USART_CR1_ON);
+        takt_gpio_set_output(config->driver);
+    takt_chip_write(address_of(u, USART_CR1), 0);
+    takt_chip_write(address_of(u, USART_BRR), divider);
+    takt_chip_write(address_of(u, USART_CR2), 0);
+    takt_chip_write(address_of(u, USART_CR3), 0);
+    takt_chip_write(address_of(u, USART_CR1), control_of(config->parity) | USART_CR1_ON);
     return true;
 }
 
-bool usart_is_idle(const struct usart *u)
+bool takt_usart_is_idle(const struct usart *u)
 {
     return !u->sending && !u->waiting;
 }
 
-bool usart_send(struct usart *u, const uint8_t *byte, size_t length)
+bool takt_usart_send(struct usart *u, const uint8_t *byte, size_t length)
 {
-    if (!usart_is_idle(u) || length == 0 || length > USART_SEND_MAX) {
+    if (!takt_usart_is_idle(u) || length == 0 || length > USART_SEND_MAX) {
         u->counts.lost++;
         return false;
     }
@@ -93,7 +93,7 @@ static void begin(struct usart *u)
 /* The last byte has been handed over: its last bit is waited for. */
 static void send_next(struct usart *u)
 {
-    chip_write(address_of(u, USART_TDR), u->byte[u->at]);
+    takt_chip_write(address_of(u, USART_TDR), u->byte[u->at]);
     u->at++;
     u->counts.sent++;
     if (u->at == u->length)
@@ -122,7 +122,7 @@ static bool go_on(struct usart *u, uint32_t status, uint32_t now_us)
 
 static void take_byte(struct usart *u, uint32_t status, uint32_t now_us)
 {
-    const uint8_t byte = (uint8_t)chip_read(address_of(u, USART_RDR));
+    const uint8_t byte = (uint8_t)takt_chip_read(address_of(u, USART_RDR));
 
     usart_clear_errors(u->config.base, status);
     u->heard_us = now_us;
@@ -141,7 +141,7 @@ static void take_byte(struct usart *u, uint32_t status, uint32_t now_us)
 /* Looks once. False: there was nothing to do. */
 static bool serve(struct usart *u, uint32_t now_us)
 {
-    const uint32_t status = chip_read(address_of(u, USART_SR));
+    const uint32_t status = takt_chip_read(address_of(u, USART_SR));
     const bool came = (status & (USART_SR_RECEIVED | USART_SR_OVERRUN)) != 0;
     /* First: when the last bit has gone, what has come is no echo but the answer to it. */
     const bool went = u->sending && go_on(u, status, now_us);
@@ -152,32 +152,32 @@ static bool serve(struct usart *u, uint32_t now_us)
 }
 
 /* More than one interrupt's work if there is: an emulator may tell of two bytes once. */
-void usart_interrupt(struct usart *u, uint32_t now_us)
+void takt_usart_interrupt(struct usart *u, uint32_t now_us)
 {
     for (unsigned i = 0; i < SERVED_MAX && serve(u, now_us); i++) {
     }
 }
 
 /* An interrupt that does not come, as in an emulator that has none for sending, stops nothing. */
-void usart_poll(struct usart *u, uint32_t now_us)
+void takt_usart_poll(struct usart *u, uint32_t now_us)
 {
-    const uint32_t before = chip_lock();
+    const uint32_t before = takt_chip_lock();
 
     if (u->waiting && now_us - u->heard_us >= u->config.gap_us)
         begin(u);
-    usart_interrupt(u, now_us);
-    chip_unlock(before);
+    takt_usart_interrupt(u, now_us);
+    takt_chip_unlock(before);
 }
 
 static bool shout_byte(const struct usart *u, uint8_t byte)
 {
     if (!chip_wait(address_of(u, USART_SR), USART_SR_ROOM, USART_SR_ROOM, CHARACTER_READS))
         return false;
-    chip_write(address_of(u, USART_TDR), byte);
+    takt_chip_write(address_of(u, USART_TDR), byte);
     return true;
 }
 
-void usart_shout(struct usart *u, const char *text)
+void takt_usart_shout(struct usart *u, const char *text)
 {
     bool good = true;
 

@@ -1,9 +1,9 @@
 /*
  * A serial line, with the driver of an RS-485 transceiver if it has one.
  *
- *     usart_send      takes a reply that stays where it is until it has gone
- *     usart_poll      begins to send it once the line has been silent for the gap
- *     usart_interrupt byte by byte; after the last bit the transceiver listens again
+ *     takt_usart_send      takes a reply that stays where it is until it has gone
+ *     takt_usart_poll      begins to send it once the line has been silent for the gap
+ *     takt_usart_interrupt byte by byte; after the last bit the transceiver listens again
  *
  * While it sends it does not listen: a transceiver whose receiver is always on would let it hear itself.
  */
@@ -27,7 +27,7 @@ struct usart_config {
     bool has_driver; /* an RS-485 transceiver, whose driver is enabled by: */
     struct gpio_pin driver;
     uint32_t gap_us; /* silence before a reply; 0: none */
-    /* A byte has come, at a time of usart_interrupt. */
+    /* A byte has come, at a time of takt_usart_interrupt. */
     void (*take)(void *context, uint8_t byte, uint32_t now_us);
     void *context; /* the caller's */
 };
@@ -52,22 +52,22 @@ struct usart {
 };
 
 /* Its pins have been set and its clock is on. False: the clock gives no such rate within 2 %. */
-bool usart_open(struct usart *u, const struct usart_config *config);
+bool takt_usart_open(struct usart *u, const struct usart_config *config);
 
 /*
- * byte: not touched until usart_is_idle. False: something is being sent, or it is too long; nothing is sent of it.
+ * byte: not touched until takt_usart_is_idle. False: something is being sent, or it is too long; nothing is sent of it.
  */
-bool usart_send(struct usart *u, const uint8_t *byte, size_t length);
+bool takt_usart_send(struct usart *u, const uint8_t *byte, size_t length);
 
 /* Nothing is being sent, or waits to be. */
-bool usart_is_idle(const struct usart *u);
+bool takt_usart_is_idle(const struct usart *u);
 
 /* As often as there is time. */
-void usart_poll(struct usart *u, uint32_t now_us);
+void takt_usart_poll(struct usart *u, uint32_t now_us);
 
-void usart_interrupt(struct usart *u, uint32_t now_us);
+void takt_usart_interrupt(struct usart *u, uint32_t now_us);
 
 /* Sends what is left and a text without interrupts, waiting: for a chip that is about to stop. */
-void usart_shout(struct usart *u, const char *text);
+void takt_usart_shout(struct usart *u, const char *text);
 
 #endif

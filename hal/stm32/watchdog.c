@@ -21,24 +21,24 @@
 /* Taking over lasts up to 5 of the watchdog's own clocks, 0.3 ms: some tens of thousands of reads. */
 #define BUSY_READS 200000U
 
-bool watchdog_start(uint32_t ms)
+bool takt_watchdog_start(uint32_t ms)
 {
     const uint32_t count = (ms + MS_PER_COUNT - 1U) / MS_PER_COUNT;
     bool good = count >= 1 && ms <= WATCHDOG_MS_MAX;
 
-    chip_write(IWDG_KR, KEY_START);
+    takt_chip_write(IWDG_KR, KEY_START);
     good = chip_wait(IWDG_SR, SR_BUSY, 0, BUSY_READS) && good;
     if (good) {
-        chip_write(IWDG_KR, KEY_ACCESS);
-        chip_write(IWDG_PR, PRESCALER_64);
-        chip_write(IWDG_RLR, count - 1U);
+        takt_chip_write(IWDG_KR, KEY_ACCESS);
+        takt_chip_write(IWDG_PR, PRESCALER_64);
+        takt_chip_write(IWDG_RLR, count - 1U);
         good = chip_wait(IWDG_SR, SR_BUSY, 0, BUSY_READS);
     }
-    watchdog_feed();
+    takt_watchdog_feed();
     return good;
 }
 
-void watchdog_feed(void)
+void takt_watchdog_feed(void)
 {
-    chip_write(IWDG_KR, KEY_FEED);
+    takt_chip_write(IWDG_KR, KEY_FEED);
 }

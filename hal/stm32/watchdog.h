@@ -11,9 +11,9 @@
 #define WATCHDOG_MS_MAX 8192U
 
 /* Starts it, or gives it another time. ms: 1 ... WATCHDOG_MS_MAX. False: it does not take the time; it runs all the same. */
-bool watchdog_start(uint32_t ms);
+bool takt_watchdog_start(uint32_t ms);
 
 /* It must be heard within the time, else the chip is reset. */
-void watchdog_feed(void);
+void takt_watchdog_feed(void);
 
 #endif

@@ -21,12 +21,12 @@ static struct drive_node node;
 
 static void on_can_sent(void)
 {
-    can_controller_interrupt_sent(&node.can);
+    takt_can_controller_interrupt_sent(&node.can);
 }
 
 static void on_can_received(void)
 {
-    can_controller_interrupt_received(&node.can);
+    takt_can_controller_interrupt_received(&node.can);
 }
 
 STARTUP_INTERRUPTS(drive_interrupts, BOARD_INTERRUPTS) = {
@@ -42,25 +42,25 @@ static void enable(enum board_interrupt interrupt)
 static bool has_crashed(void)
 {
     struct crash_record crash;
-    const bool was_bitten = (chip_read(RCC_RESETS) & RCC_RESETS_WATCHDOG) != 0;
+    const bool was_bitten = (takt_chip_read(RCC_RESETS) & RCC_RESETS_WATCHDOG) != 0;
 
     chip_change(RCC_RESETS, 0, RCC_RESETS_FORGET);
-    return exceptions_take_crash(&crash) || was_bitten;
+    return takt_exceptions_take_crash(&crash) || was_bitten;
 }
 
 static void set_pins(void)
 {
-    gpio_set_function(drive_up, DRIVE_PWM_FUNCTION);
-    gpio_set_function(drive_down, DRIVE_PWM_FUNCTION);
-    gpio_set_function(drive_fails, DRIVE_PWM_FUNCTION);
-    gpio_set_function(drive_track_a, DRIVE_ENCODER_FUNCTION);
-    gpio_set_function(drive_track_b, DRIVE_ENCODER_FUNCTION);
-    gpio_set_function(drive_index, DRIVE_ENCODER_FUNCTION);
-    gpio_set_function(drive_home, DRIVE_ENCODER_FUNCTION);
-    gpio_set_input(drive_limit_low, true);
-    gpio_set_input(drive_limit_high, true);
-    gpio_set_function(board_can_rx, BOARD_CAN_FUNCTION);
-    gpio_set_function(board_can_tx, BOARD_CAN_FUNCTION);
+    takt_gpio_set_function(drive_up, DRIVE_PWM_FUNCTION);
+    takt_gpio_set_function(drive_down, DRIVE_PWM_FUNCTION);
+    takt_gpio_set_function(drive_fails, DRIVE_PWM_FUNCTION);
+    takt_gpio_set_function(drive_track_a, DRIVE_ENCODER_FUNCTION);
+    takt_gpio_set_function(drive_track_b, DRIVE_ENCODER_FUNCTION);
+    takt_gpio_set_function(drive_index, DRIVE_ENCODER_FUNCTION);
+    takt_gpio_set_function(drive_home, DRIVE_ENCODER_FUNCTION);
+    takt_gpio_set_input(drive_limit_low, true);
+    takt_gpio_set_input(drive_limit_high, true);
+    takt_gpio_set_function(board_can_rx, BOARD_CAN_FUNCTION);
+    takt_gpio_set_function(board_can_tx, BOARD_CAN_FUNCTION);
 }
 
 /* With the whole torque M an axis of lead h per radian is accelerated by h M / J. */
@@ -89,17 +89,17 @@ static bool start(void)
     struct diagnostic damage;
     struct clock clock;
 
-    clock_start(&clock, BOARD_CRYSTAL_HZ);
-    (void)watchdog_start(FLASH_WATCHDOG_MS);
+    takt_clock_start(&clock, BOARD_CRYSTAL_HZ);
+    (void)takt_watchdog_start(FLASH_WATCHDOG_MS);
     set_pins();
     const struct drive_node_config config = make_config(&clock);
-    if (!image_is_sound(&damage) || clock.source != CLOCK_CRYSTAL ||
-        !drive_node_open(&node, &config))
+    if (!takt_image_is_sound(&damage) || clock.source != CLOCK_CRYSTAL ||
+        !takt_drive_node_open(&node, &config))
         return false;
     enable(BOARD_CAN_SENT);
     enable(BOARD_CAN_RECEIVED);
-    (void)watchdog_start(BOARD_WATCHDOG_MS);
-    timers_start_cycle(clock.timer1_hz, drive_config.loop.loop_period_us);
+    (void)takt_watchdog_start(BOARD_WATCHDOG_MS);
+    takt_timers_start_cycle(clock.timer1_hz, drive_config.loop.loop_period_us);
     return true;
 }
 
@@ -115,5 +115,5 @@ int main(void)
     if (!start())
         stay();
     for (;;)
-        drive_node_cycle(&node);
+        takt_drive_node_cycle(&node);
 }

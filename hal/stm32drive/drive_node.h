@@ -33,9 +33,9 @@ struct drive_node {
 };
 
 /* Switches the drive on, and boots it. False: there is no bus. node must not be moved afterwards. */
-bool drive_node_open(struct drive_node *node, const struct drive_node_config *config);
+bool takt_drive_node_open(struct drive_node *node, const struct drive_node_config *config);
 
 /* The timer of the control cycle runs. */
-void drive_node_cycle(struct drive_node *node);
+void takt_drive_node_cycle(struct drive_node *node);
 
 #endif

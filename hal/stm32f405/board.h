@@ -27,7 +27,7 @@
 #define BOARD_TIMER_HZ 0U /* that of the bus they are on */
 #endif
 #ifndef BOARD_PANEL_GAP_US
-#define BOARD_PANEL_GAP_US modbus_rtu_gap_us(BOARD_PANEL_BAUDS, BOARD_PANEL_BITS)
+#define BOARD_PANEL_GAP_US takt_modbus_rtu_gap_us(BOARD_PANEL_BAUDS, BOARD_PANEL_BITS)
 #endif
 
 #define BOARD_USART_FUNCTION 7U

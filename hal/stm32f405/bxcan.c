@@ -17,17 +17,17 @@
 
 static uint32_t read(uint32_t offset)
 {
-    return chip_read(BXCAN_CAN1 + offset);
+    return takt_chip_read(BXCAN_CAN1 + offset);
 }
 
 static void write(uint32_t offset, uint32_t value)
 {
-    chip_write(BXCAN_CAN1 + offset, value);
+    takt_chip_write(BXCAN_CAN1 + offset, value);
 }
 
 /* ---- bit timing ---- */
 
-/* Thousandths of a bit between the sample point of quanta with so many behind it and 7/8. */
+/* Thousandths of a bit between the sample point of quanta with this many behind it and 7/8. */
 static uint32_t sample_error(uint32_t quanta, uint32_t behind)
 {
     const uint32_t sample = 1000U * (quanta - behind) / quanta;
@@ -63,7 +63,7 @@ static uint32_t timing_for(uint32_t clock_hz, uint32_t bitrate)
     return best;
 }
 
-uint32_t can_hardware_find_impossible(uint32_t clock_hz, const struct can_rates *rates)
+uint32_t takt_can_hardware_find_impossible(uint32_t clock_hz, const struct can_rates *rates)
 {
     if (rates->data != 0)
         return rates->data;
@@ -114,7 +114,7 @@ static bool enter_start(void)
                      ANSWER_READS);
 }
 
-bool can_hardware_open(const struct can_config *config)
+bool takt_can_hardware_open(const struct can_config *config)
 {
     chip_change(RCC_APB1ENR, 0, RCC_APB1ENR_CAN1);
     if (!enter_start())
@@ -126,30 +126,30 @@ bool can_hardware_open(const struct can_config *config)
 }
 
 /* Leaves the start-up mode: the controller takes part when it has heard 11 recessive bits. */
-bool can_hardware_join(void)
+bool takt_can_hardware_join(void)
 {
     chip_change(BXCAN_CAN1 + BXCAN_MCR, BXCAN_MCR_INRQ, 0);
     return chip_wait(BXCAN_CAN1 + BXCAN_MSR, BXCAN_MSR_INAK, 0, ANSWER_READS);
 }
 
-bool can_hardware_takes_part(void)
+bool takt_can_hardware_takes_part(void)
 {
-    return (read(BXCAN_MSR) & BXCAN_MSR_INAK) == 0 && !can_hardware_is_off();
+    return (read(BXCAN_MSR) & BXCAN_MSR_INAK) == 0 && !takt_can_hardware_is_off();
 }
 
-bool can_hardware_is_off(void)
+bool takt_can_hardware_is_off(void)
 {
     return (read(BXCAN_ESR) & BXCAN_ESR_BUS_OFF) != 0;
 }
 
 /* It has to be led through its start-up mode; joining then counts the recessive bits. */
-void can_hardware_leave(void)
+void takt_can_hardware_leave(void)
 {
     write(BXCAN_TSR, BXCAN_TSR_ABRQ(0) | BXCAN_TSR_ABRQ(1) | BXCAN_TSR_ABRQ(2));
     chip_change(BXCAN_CAN1 + BXCAN_MCR, 0, BXCAN_MCR_INRQ);
 }
 
-bool can_hardware_rejoin(void)
+bool takt_can_hardware_rejoin(void)
 {
     if ((read(BXCAN_MSR) & BXCAN_MSR_INAK) == 0)
         return false;
@@ -165,7 +165,7 @@ static uint32_t word_of(const uint8_t *byte)
            (uint32_t)byte[3] << 24;
 }
 
-void can_hardware_load(unsigned i, const struct can_frame *frame)
+void takt_can_hardware_load(unsigned i, const struct can_frame *frame)
 {
     write(BXCAN_TDT(i), frame->length);
     write(BXCAN_TDL(i), word_of(frame->data));
@@ -174,12 +174,12 @@ void can_hardware_load(unsigned i, const struct can_frame *frame)
                            (can_is_remote(frame) ? BXCAN_I_REMOTE : 0));
 }
 
-void can_hardware_take_back(unsigned i)
+void takt_can_hardware_take_back(unsigned i)
 {
     write(BXCAN_TSR, BXCAN_TSR_ABRQ(i));
 }
 
-unsigned can_hardware_take_done(unsigned *sent)
+unsigned takt_can_hardware_take_done(unsigned *sent)
 {
     const uint32_t status = read(BXCAN_TSR);
     unsigned done = 0;
@@ -220,7 +220,7 @@ static bool read_head(struct can_frame *frame)
     return true;
 }
 
-enum can_heard can_hardware_hear(struct can_frame *frame)
+enum can_heard takt_can_hardware_hear(struct can_frame *frame)
 {
     bool good;
 
@@ -233,7 +233,7 @@ enum can_heard can_hardware_hear(struct can_frame *frame)
                : CAN_HEARD_OTHER;
 }
 
-bool can_hardware_take_overrun(void)
+bool takt_can_hardware_take_overrun(void)
 {
     const bool any = (read(BXCAN_RF0R) & BXCAN_RF_OVERRUN) != 0;
 
@@ -245,7 +245,7 @@ bool can_hardware_take_overrun(void)
 /* ---- errors ---- */
 
 /* The code stays until it is overwritten with the one the controller never sets. */
-unsigned can_hardware_take_error(void)
+unsigned takt_can_hardware_take_error(void)
 {
     const unsigned code = BXCAN_ESR_LAST(read(BXCAN_ESR));
 
@@ -255,7 +255,7 @@ unsigned can_hardware_take_error(void)
     return code;
 }
 
-void can_hardware_get_errors(unsigned *sending, unsigned *receiving)
+void takt_can_hardware_get_errors(unsigned *sending, unsigned *receiving)
 {
     const uint32_t status = read(BXCAN_ESR);
 

@@ -114,7 +114,7 @@ static void set_slow(struct clock *clock)
     clock->can_hz = INTERNAL_HZ;
 }
 
-void clock_start(struct clock *clock, uint32_t crystal_hz)
+void takt_clock_start(struct clock *clock, uint32_t crystal_hz)
 {
     clock->source = start_source(crystal_hz);
     if (clock->source == CLOCK_SLOW)

@@ -35,7 +35,7 @@
 static bool fail(struct flash *flash, enum flash_problem problem)
 {
     flash->problem = problem;
-    flash->status = chip_read(FLASH_SR);
+    flash->status = takt_chip_read(FLASH_SR);
     return false;
 }
 
@@ -43,13 +43,13 @@ static bool unlock(struct flash *flash)
 {
     if (!chip_wait(FLASH_SR, SR_BUSY, 0, PROGRAM_READS))
         return fail(flash, FLASH_BUSY);
-    if ((chip_read(FLASH_CR) & CR_LOCK) != 0) {
-        chip_write(FLASH_KEYR, KEY1);
-        chip_write(FLASH_KEYR, KEY2);
+    if ((takt_chip_read(FLASH_CR) & CR_LOCK) != 0) {
+        takt_chip_write(FLASH_KEYR, KEY1);
+        takt_chip_write(FLASH_KEYR, KEY2);
     }
-    if ((chip_read(FLASH_CR) & CR_LOCK) != 0)
+    if ((takt_chip_read(FLASH_CR) & CR_LOCK) != 0)
         return fail(flash, FLASH_LOCKED);
-    chip_write(FLASH_SR, SR_END | SR_ERRORS);
+    takt_chip_write(FLASH_SR, SR_END | SR_ERRORS);
     return true;
 }
 
@@ -58,7 +58,7 @@ static bool complete(struct flash *flash, uint32_t reads)
 {
     if (!chip_wait(FLASH_SR, SR_BUSY, 0, reads))
         return fail(flash, FLASH_BUSY);
-    if ((chip_read(FLASH_SR) & SR_ERRORS) != 0)
+    if ((takt_chip_read(FLASH_SR) & SR_ERRORS) != 0)
         return fail(flash, FLASH_REFUSED);
     return true;
 }
@@ -66,7 +66,7 @@ static bool complete(struct flash *flash, uint32_t reads)
 /* The data cache may hold what was there before. */
 static void forget_cache(void)
 {
-    const uint32_t cache = chip_read(FLASH_ACR) & FLASH_ACR_DCACHE;
+    const uint32_t cache = takt_chip_read(FLASH_ACR) & FLASH_ACR_DCACHE;
 
     chip_change(FLASH_ACR, FLASH_ACR_DCACHE, 0);
     chip_change(FLASH_ACR, 0, FLASH_ACR_DCACHE_RESET);
@@ -75,7 +75,7 @@ static void forget_cache(void)
 
 static void lock(void)
 {
-    chip_write(FLASH_CR, CR_LOCK);
+    takt_chip_write(FLASH_CR, CR_LOCK);
     forget_cache();
 }
 
@@ -88,11 +88,11 @@ static bool erase(void *context, unsigned sector)
     if (good) {
         const uint32_t control = CR_ERASE | CR_32_BITS | CR_SECTOR(FLASH_SECTOR_NUMBER + sector);
 
-        (void)watchdog_start(FLASH_WATCHDOG_MS);
-        chip_write(FLASH_CR, control);
-        chip_write(FLASH_CR, control | CR_START);
+        (void)takt_watchdog_start(FLASH_WATCHDOG_MS);
+        takt_chip_write(FLASH_CR, control);
+        takt_chip_write(FLASH_CR, control | CR_START);
         good = complete(flash, ERASE_READS);
-        (void)watchdog_start(FLASH_WATCHDOG_MS_RUN);
+        (void)takt_watchdog_start(FLASH_WATCHDOG_MS_RUN);
     }
     lock();
     return good;
@@ -106,10 +106,10 @@ static uint32_t word_at(const uint8_t *bytes)
 
 static bool program_word(struct flash *flash, uint32_t address, uint32_t word)
 {
-    chip_write(address, word);
+    takt_chip_write(address, word);
     if (!complete(flash, PROGRAM_READS))
         return false;
-    return chip_read(address) == word || fail(flash, FLASH_DIFFERS);
+    return takt_chip_read(address) == word || fail(flash, FLASH_DIFFERS);
 }
 
 static bool program(void *context, unsigned sector, uint32_t offset, const uint8_t *bytes,
@@ -120,14 +120,14 @@ static bool program(void *context, unsigned sector, uint32_t offset, const uint8
     bool good = unlock(flash);
 
     if (good)
-        chip_write(FLASH_CR, CR_PROGRAM | CR_32_BITS);
+        takt_chip_write(FLASH_CR, CR_PROGRAM | CR_32_BITS);
     for (uint32_t i = 0; i < words * FLASH_WORD_BYTES && good; i += 4)
         good = program_word(flash, address + i, word_at(bytes + i));
     lock();
     return good;
 }
 
-struct flash_port flash_get_port(struct flash *flash, const uint8_t *mapped)
+struct flash_port takt_flash_get_port(struct flash *flash, const uint8_t *mapped)
 {
     memset(flash, 0, sizeof *flash);
     return (struct flash_port){.sector_bytes = FLASH_SECTOR_BYTES,

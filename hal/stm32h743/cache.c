@@ -19,22 +19,22 @@
 #define CCR_IGNORE_BUS_FAULTS (1U << 8) /* of handlers that nothing interrupts */
 #define CCR_CACHES            (3U << 16)
 
-void peripherals_order(void)
+void takt_peripherals_order(void)
 {
     __asm volatile("dsb\n\tisb" ::: "memory");
 }
 
 /* What a cache holds at reset is not known. */
-void port_begin(void)
+void takt_port_begin(void)
 {
     ICIALLU = 0;
     for (uint32_t set = 0; set < SETS; set++) {
         for (uint32_t way = 0; way < WAYS; way++)
             DCISW = way << 30 | set << 5;
     }
-    peripherals_order();
+    takt_peripherals_order();
     CCR |= CCR_CACHES;
-    peripherals_order();
+    takt_peripherals_order();
 }
 
 void peripherals_write_back(const void *memory, size_t bytes)
@@ -42,27 +42,27 @@ void peripherals_write_back(const void *memory, size_t bytes)
     const uint32_t begin = (uint32_t)(uintptr_t)memory & ~(LINE - 1U);
     const uint32_t end = (uint32_t)(uintptr_t)memory + bytes;
 
-    peripherals_order();
+    takt_peripherals_order();
     for (uint32_t at = begin; at < end; at += LINE)
         DCCMVAC = at;
-    peripherals_order();
+    takt_peripherals_order();
 }
 
-void peripherals_forget(uint32_t address, uint32_t bytes)
+void takt_peripherals_forget(uint32_t address, uint32_t bytes)
 {
-    peripherals_order();
+    takt_peripherals_order();
     for (uint32_t at = address & ~(LINE - 1U); at < address + bytes; at += LINE)
         DCIMVAC = at;
-    peripherals_order();
+    takt_peripherals_order();
 }
 
-void peripherals_touch(uint32_t address)
+void takt_peripherals_touch(uint32_t address)
 {
     __asm volatile("cpsid f" ::: "memory");
     CCR |= CCR_IGNORE_BUS_FAULTS;
-    peripherals_order();
+    takt_peripherals_order();
     (void)*(volatile const uint32_t *)(uintptr_t)address;
-    peripherals_order();
+    takt_peripherals_order();
     CCR &= ~CCR_IGNORE_BUS_FAULTS;
     __asm volatile("cpsie f" ::: "memory");
 }

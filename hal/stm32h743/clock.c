@@ -53,8 +53,8 @@ static bool start_pll(uint32_t source_mhz, uint32_t source)
     chip_change(RCC_PLLCKSELR, RCC_PLLCKSELR_MASK, source | RCC_PLLCKSELR_DIVM(source_mhz / input));
     chip_change(RCC_PLLCFGR, RCC_PLLCFGR_MASK,
                 RCC_PLLCFGR_P_Q | (input < 4 ? RCC_PLLCFGR_2_4_MHZ : RCC_PLLCFGR_4_8_MHZ));
-    chip_write(RCC_PLL1DIVR, RCC_PLL1DIVR_N(VCO_MHZ / input) | RCC_PLL1DIVR_P(2U) |
-                                 RCC_PLL1DIVR_Q(10U) | RCC_PLL1DIVR_R(2U));
+    takt_chip_write(RCC_PLL1DIVR, RCC_PLL1DIVR_N(VCO_MHZ / input) | RCC_PLL1DIVR_P(2U) |
+                                      RCC_PLL1DIVR_Q(10U) | RCC_PLL1DIVR_R(2U));
     chip_change(RCC_CR, 0, RCC_CR_PLLON);
     if (chip_wait(RCC_CR, RCC_CR_PLLRDY, RCC_CR_PLLRDY, PLL_READS))
         return true;
@@ -65,7 +65,7 @@ static bool start_pll(uint32_t source_mhz, uint32_t source)
 /* Supplied by the chip's own regulator, which has to be said once after power-on, before its mode may change. */
 static bool prepare_power(void)
 {
-    if ((chip_read(PWR_CR3) & PWR_CR3_OPEN) != 0)
+    if ((takt_chip_read(PWR_CR3) & PWR_CR3_OPEN) != 0)
         chip_change(PWR_CR3, PWR_CR3_OPEN | PWR_CR3_BYPASS, PWR_CR3_LDO);
     if (!chip_wait(PWR_CSR1, PWR_CSR1_SUPPLIED, PWR_CSR1_SUPPLIED, SHORT_READS))
         return false;
@@ -144,7 +144,7 @@ static void set_slow(struct clock *clock)
     clock->can_hz = 0;
 }
 
-void clock_start(struct clock *clock, uint32_t crystal_hz)
+void takt_clock_start(struct clock *clock, uint32_t crystal_hz)
 {
     clock->source = start_source(crystal_hz);
     if (clock->source == CLOCK_SLOW)

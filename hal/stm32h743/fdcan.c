@@ -19,12 +19,12 @@
 
 static uint32_t read(uint32_t offset)
 {
-    return chip_read(FDCAN_1 + offset);
+    return takt_chip_read(FDCAN_1 + offset);
 }
 
 static void write(uint32_t offset, uint32_t value)
 {
-    chip_write(FDCAN_1 + offset, value);
+    takt_chip_write(FDCAN_1 + offset, value);
 }
 
 static uint32_t word_address(uint32_t word)
@@ -48,7 +48,7 @@ static const struct limits nominal_limits = {256, 128, 512}, data_limits = {32, 
 
 #define QUANTA_MIN 8U
 
-/* Of the delay of a transceiver, which is measured: only for quanta of up to two clocks (ISO 11898-1, 11.3.3). */
+/* A transceiver's delay is measured, and compensated, only for quanta of up to two clocks (ISO 11898-1, 11.3.3). */
 #define DELAY_DIVIDER_MAX 2U
 #define DELAY_OFFSET_MAX  127U
 
@@ -91,7 +91,7 @@ static uint32_t divider_for(uint32_t clock_hz, const struct can_rates *rates, st
     return 0;
 }
 
-uint32_t can_hardware_find_impossible(uint32_t clock_hz, const struct can_rates *rates)
+uint32_t takt_can_hardware_find_impossible(uint32_t clock_hz, const struct can_rates *rates)
 {
     const struct can_rates classical = {rates->nominal, 0};
     struct bit nominal, data;
@@ -139,14 +139,14 @@ static bool enter_start(uint32_t modes)
         return false;
     write(FDCAN_CCCR, FDCAN_CCCR_INIT | FDCAN_CCCR_CCE);
     write(FDCAN_CCCR, FDCAN_CCCR_INIT | FDCAN_CCCR_CCE | modes);
-    chip_write(FDCAN_CCFG, FDCAN_CCFG_BYPASS);
+    takt_chip_write(FDCAN_CCFG, FDCAN_CCFG_BYPASS);
     return true;
 }
 
 static void set_filters(const struct can_config *config)
 {
     for (unsigned i = 0; i < config->nodes; i++)
-        chip_write(word_address(FILTERS_AT + i), FDCAN_FILTER(config->node[i], 0x7FU));
+        takt_chip_write(word_address(FILTERS_AT + i), FDCAN_FILTER(config->node[i], 0x7FU));
     write(FDCAN_GFC, config->nodes == 0 ? FDCAN_GFC_ANY : FDCAN_GFC_NAMED_ONLY);
     write(FDCAN_SIDFC, FDCAN_SIDFC_LIST(FILTERS_AT, config->nodes));
     write(FDCAN_XIDFC, 0);
@@ -171,7 +171,7 @@ static void set_interrupts(void)
     write(FDCAN_ILE, FDCAN_ILE_BOTH);
 }
 
-bool can_hardware_open(const struct can_config *config)
+bool takt_can_hardware_open(const struct can_config *config)
 {
     chip_change(RCC_APB1HENR, 0, RCC_APB1HENR_FDCAN);
     if (!enter_start(config->rates.data != 0 ? FDCAN_CCCR_FDOE | FDCAN_CCCR_BRSE : 0))
@@ -183,7 +183,7 @@ bool can_hardware_open(const struct can_config *config)
     return true;
 }
 
-bool can_hardware_takes_part(void)
+bool takt_can_hardware_takes_part(void)
 {
     const uint32_t status = read(FDCAN_PSR);
 
@@ -191,29 +191,29 @@ bool can_hardware_takes_part(void)
 }
 
 /* It is in step when it has heard 11 recessive bits. */
-bool can_hardware_join(void)
+bool takt_can_hardware_join(void)
 {
     bool good = false;
 
     chip_change(FDCAN_1 + FDCAN_CCCR, FDCAN_CCCR_INIT | FDCAN_CCCR_CCE, 0);
     for (uint32_t i = 0; i < ANSWER_READS && !good; i++)
-        good = can_hardware_takes_part();
+        good = takt_can_hardware_takes_part();
     return good;
 }
 
-bool can_hardware_is_off(void)
+bool takt_can_hardware_is_off(void)
 {
     return (read(FDCAN_PSR) & FDCAN_PSR_BUS_OFF) != 0;
 }
 
 /* At bus-off the controller goes to its start-up mode by itself; allowing changes there empties the mailboxes. */
-void can_hardware_leave(void)
+void takt_can_hardware_leave(void)
 {
     chip_change(FDCAN_1 + FDCAN_CCCR, 0, FDCAN_CCCR_INIT);
     chip_change(FDCAN_1 + FDCAN_CCCR, 0, FDCAN_CCCR_CCE);
 }
 
-bool can_hardware_rejoin(void)
+bool takt_can_hardware_rejoin(void)
 {
     if (!is_starting())
         return false;
@@ -248,25 +248,25 @@ static uint32_t control_of(const struct can_frame *frame)
     return FDCAN_E1_DLC(code_of(frame->length)) | (is_fd ? FDCAN_E1_FD | FDCAN_E1_FAST : 0);
 }
 
-void can_hardware_load(unsigned i, const struct can_frame *frame)
+void takt_can_hardware_load(unsigned i, const struct can_frame *frame)
 {
     const uint32_t at = word_address(MAILBOXES_AT + i * FDCAN_ELEMENT_WORDS);
 
-    chip_write(at,
-               FDCAN_E0_ID(frame->id & CAN_ID_MASK) | (can_is_remote(frame) ? FDCAN_E0_REMOTE : 0));
-    chip_write(at + 4U, control_of(frame));
+    takt_chip_write(at, FDCAN_E0_ID(frame->id & CAN_ID_MASK) |
+                            (can_is_remote(frame) ? FDCAN_E0_REMOTE : 0));
+    takt_chip_write(at + 4U, control_of(frame));
     for (unsigned byte = 0; byte < can_data_length(frame); byte += 4)
-        chip_write(at + 8U + byte, word_of(frame->data + byte));
+        takt_chip_write(at + 8U + byte, word_of(frame->data + byte));
     write(FDCAN_TXBAR, 1U << i);
 }
 
-void can_hardware_take_back(unsigned i)
+void takt_can_hardware_take_back(unsigned i)
 {
     write(FDCAN_TXBCR, 1U << i);
 }
 
 /* What ended before the flags are cleared is seen here; what ends later raises them again. */
-unsigned can_hardware_take_done(unsigned *sent)
+unsigned takt_can_hardware_take_done(unsigned *sent)
 {
     uint32_t done;
 
@@ -280,7 +280,7 @@ unsigned can_hardware_take_done(unsigned *sent)
 static void read_data(struct can_frame *frame, uint32_t at)
 {
     for (unsigned i = 0; i < frame->length; i += 4) {
-        const uint32_t word = chip_read(at + i);
+        const uint32_t word = takt_chip_read(at + i);
 
         for (unsigned byte = i; byte < i + 4 && byte < frame->length; byte++)
             frame->data[byte] = (uint8_t)(word >> 8U * (byte - i));
@@ -289,7 +289,7 @@ static void read_data(struct can_frame *frame, uint32_t at)
 
 static bool read_element(struct can_frame *frame, uint32_t at)
 {
-    const uint32_t identifier = chip_read(at), control = chip_read(at + 4U);
+    const uint32_t identifier = takt_chip_read(at), control = takt_chip_read(at + 4U);
     const uint8_t length = lengths[FDCAN_E1_DLC_OF(control)];
 
     if ((identifier & (FDCAN_E0_LONG | FDCAN_E0_REMOTE)) != 0)
@@ -301,7 +301,7 @@ static bool read_element(struct can_frame *frame, uint32_t at)
     return true;
 }
 
-enum can_heard can_hardware_hear(struct can_frame *frame)
+enum can_heard takt_can_hardware_hear(struct can_frame *frame)
 {
     uint32_t status, first;
     bool good;
@@ -316,7 +316,7 @@ enum can_heard can_hardware_hear(struct can_frame *frame)
     return good ? CAN_HEARD_FRAME : CAN_HEARD_OTHER;
 }
 
-bool can_hardware_take_overrun(void)
+bool takt_can_hardware_take_overrun(void)
 {
     const bool any = (read(FDCAN_IR) & FDCAN_IR_LOST) != 0;
 
@@ -328,7 +328,7 @@ bool can_hardware_take_overrun(void)
 /* ---- errors ---- */
 
 /* Reading the status forgets it. */
-unsigned can_hardware_take_error(void)
+unsigned takt_can_hardware_take_error(void)
 {
     const uint32_t status = read(FDCAN_PSR);
     const unsigned last = FDCAN_PSR_LAST(status), data = FDCAN_PSR_LAST_DATA(status);
@@ -338,7 +338,7 @@ unsigned can_hardware_take_error(void)
     return last == FDCAN_PSR_LAST_UNCHANGED ? 0 : last;
 }
 
-void can_hardware_get_errors(unsigned *sending, unsigned *receiving)
+void takt_can_hardware_get_errors(unsigned *sending, unsigned *receiving)
 {
     const uint32_t errors = read(FDCAN_ECR);
 

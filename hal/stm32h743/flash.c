@@ -33,7 +33,7 @@
 static bool fail(struct flash *flash, enum flash_problem problem)
 {
     flash->problem = problem;
-    flash->status = chip_read(FLASH_SR);
+    flash->status = takt_chip_read(FLASH_SR);
     return false;
 }
 
@@ -41,13 +41,13 @@ static bool unlock(struct flash *flash)
 {
     if (!chip_wait(FLASH_SR, SR_BUSY, 0, PROGRAM_READS))
         return fail(flash, FLASH_BUSY);
-    if ((chip_read(FLASH_CR) & CR_LOCK) != 0) {
-        chip_write(FLASH_KEYR, KEY1);
-        chip_write(FLASH_KEYR, KEY2);
+    if ((takt_chip_read(FLASH_CR) & CR_LOCK) != 0) {
+        takt_chip_write(FLASH_KEYR, KEY1);
+        takt_chip_write(FLASH_KEYR, KEY2);
     }
-    if ((chip_read(FLASH_CR) & CR_LOCK) != 0)
+    if ((takt_chip_read(FLASH_CR) & CR_LOCK) != 0)
         return fail(flash, FLASH_LOCKED);
-    chip_write(FLASH_CCR, SR_ERRORS);
+    takt_chip_write(FLASH_CCR, SR_ERRORS);
     return true;
 }
 
@@ -55,7 +55,7 @@ static bool complete(struct flash *flash, uint32_t reads)
 {
     if (!chip_wait(FLASH_SR, SR_BUSY, 0, reads))
         return fail(flash, FLASH_BUSY);
-    if ((chip_read(FLASH_SR) & SR_ERRORS) != 0)
+    if ((takt_chip_read(FLASH_SR) & SR_ERRORS) != 0)
         return fail(flash, FLASH_REFUSED);
     return true;
 }
@@ -72,14 +72,14 @@ static bool erase(void *context, unsigned sector)
     bool good = unlock(flash);
 
     if (good) {
-        (void)watchdog_start(FLASH_WATCHDOG_MS);
-        chip_write(FLASH_CR, CR_ERASE | CR_64_BITS | CR_SECTOR(FLASH_SECTOR_NUMBER + sector));
+        (void)takt_watchdog_start(FLASH_WATCHDOG_MS);
+        takt_chip_write(FLASH_CR, CR_ERASE | CR_64_BITS | CR_SECTOR(FLASH_SECTOR_NUMBER + sector));
         chip_change(FLASH_CR, 0, CR_START);
         good = complete(flash, ERASE_READS);
-        (void)watchdog_start(FLASH_WATCHDOG_MS_RUN);
+        (void)takt_watchdog_start(FLASH_WATCHDOG_MS_RUN);
     }
-    chip_write(FLASH_CR, CR_LOCK);
-    peripherals_forget(address_of(sector), FLASH_SECTOR_BYTES);
+    takt_chip_write(FLASH_CR, CR_LOCK);
+    takt_peripherals_forget(address_of(sector), FLASH_SECTOR_BYTES);
     return good;
 }
 
@@ -93,18 +93,18 @@ static uint32_t word_at(const uint8_t *bytes)
 static bool program_word(struct flash *flash, uint32_t address, const uint8_t *bytes)
 {
     for (uint32_t i = 0; i < FLASH_WORD_BYTES; i += 4) {
-        if (chip_read(address + i) != UINT32_MAX)
+        if (takt_chip_read(address + i) != UINT32_MAX)
             return fail(flash, FLASH_DIFFERS);
     }
-    peripherals_order();
+    takt_peripherals_order();
     for (uint32_t i = 0; i < FLASH_WORD_BYTES; i += 4)
-        chip_write(address + i, word_at(bytes + i));
-    peripherals_order();
+        takt_chip_write(address + i, word_at(bytes + i));
+    takt_peripherals_order();
     if (!complete(flash, PROGRAM_READS))
         return false;
-    peripherals_forget(address, FLASH_WORD_BYTES);
+    takt_peripherals_forget(address, FLASH_WORD_BYTES);
     for (uint32_t i = 0; i < FLASH_WORD_BYTES; i += 4) {
-        if (chip_read(address + i) != word_at(bytes + i))
+        if (takt_chip_read(address + i) != word_at(bytes + i))
             return fail(flash, FLASH_DIFFERS);
     }
     return true;
@@ -117,27 +117,27 @@ static bool program(void *context, unsigned sector, uint32_t offset, const uint8
     bool good = unlock(flash);
 
     if (good)
-        chip_write(FLASH_CR, CR_PROGRAM | CR_64_BITS);
+        takt_chip_write(FLASH_CR, CR_PROGRAM | CR_64_BITS);
     for (uint32_t i = 0; i < words && good; i++)
         good = program_word(flash, address_of(sector) + offset + FLASH_WORD_BYTES * i,
                             bytes + (size_t)FLASH_WORD_BYTES * i);
-    chip_write(FLASH_CR, CR_LOCK);
+    takt_chip_write(FLASH_CR, CR_LOCK);
     return good;
 }
 
 static bool is_readable(unsigned sector)
 {
-    chip_write(FLASH_CCR, SR_ERRORS);
+    takt_chip_write(FLASH_CCR, SR_ERRORS);
     for (uint32_t at = 0; at < FLASH_SECTOR_BYTES; at += FLASH_WORD_BYTES)
-        peripherals_touch(address_of(sector) + at);
-    return (chip_read(FLASH_SR) & SR_DAMAGED) == 0;
+        takt_peripherals_touch(address_of(sector) + at);
+    return (takt_chip_read(FLASH_SR) & SR_DAMAGED) == 0;
 }
 
 /*
  * Where power has failed while a word was being programmed, its code fits nothing and reading it is a bus fault. Such a
  * sector holds no set that counts: it is erased before anybody looks.
  */
-struct flash_port flash_get_port(struct flash *flash, const uint8_t *mapped)
+struct flash_port takt_flash_get_port(struct flash *flash, const uint8_t *mapped)
 {
     memset(flash, 0, sizeof *flash);
     for (unsigned i = 0; i < FLASH_SECTORS; i++) {

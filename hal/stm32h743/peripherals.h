@@ -25,19 +25,19 @@
 /* Stream 1 of DMA2 is channel 9 of the multiplexer, updates of TIM8 are request 51 (RM0433, 17.3). */
 static inline void peripherals_route_steps(void)
 {
-    chip_write(0x40020824U, 51U);
+    takt_chip_write(0x40020824U, 51U);
 }
 
 /* What the processor has written can be read by others, and is kept by a reset (cache.c). */
 void peripherals_write_back(const void *memory, size_t bytes);
 
 /* What has been written is there before anything that follows: memory, flash too, has no order with registers. */
-void peripherals_order(void);
+void takt_peripherals_order(void);
 
 /* What others have written is read anew. */
-void peripherals_forget(uint32_t address, uint32_t bytes);
+void takt_peripherals_forget(uint32_t address, uint32_t bytes);
 
 /* Reads a word that may be damaged beyond repair, which is a fault else; the memory's own status tells. */
-void peripherals_touch(uint32_t address);
+void takt_peripherals_touch(uint32_t address);
 
 #endif

@@ -39,8 +39,8 @@
 /* The errors in a status that has been read. */
 static inline void usart_clear_errors(uint32_t base, uint32_t status)
 {
-    chip_write(base + USART_ICR,
-               status & (USART_SR_PARITY | USART_SR_FRAMING | USART_SR_NOISE | USART_SR_OVERRUN));
+    takt_chip_write(base + USART_ICR, status & (USART_SR_PARITY | USART_SR_FRAMING |
+                                                USART_SR_NOISE | USART_SR_OVERRUN));
 }
 
 #endif

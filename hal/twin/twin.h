@@ -44,17 +44,17 @@ struct twin_setup {
 
 enum twin_order_kind {
     TWIN_END,       /* the image ends */
-    TWIN_BOOT,      /* servo_boot */
-    TWIN_FRAME,     /* servo_on_frame_at */
-    TWIN_STEP,      /* servo_step: a, ns */
-    TWIN_TOUCH,     /* servo_touch: a, ratio */
-    TWIN_LOOK,      /* servo_loop_look */
-    TWIN_FAIL,      /* servo_fail: a code, b register */
-    TWIN_EMERGENCY, /* servo_send_emergency: the same */
-    TWIN_REBOOT,    /* servo_reboot */
-    TWIN_WRITE,     /* servo_write_object: a object, b value */
-    TWIN_MEDDLE,    /* servo_meddle: from now on the image asks */
-    TWIN_EDS        /* servo_set_eds: a bytes follow */
+    TWIN_BOOT,      /* takt_servo_boot */
+    TWIN_FRAME,     /* takt_servo_on_frame_at */
+    TWIN_STEP,      /* takt_servo_step: a, ns */
+    TWIN_TOUCH,     /* takt_servo_touch: a, ratio */
+    TWIN_LOOK,      /* takt_servo_loop_look */
+    TWIN_FAIL,      /* takt_servo_fail: a code, b register */
+    TWIN_EMERGENCY, /* takt_servo_send_emergency: the same */
+    TWIN_REBOOT,    /* takt_servo_reboot */
+    TWIN_WRITE,     /* takt_servo_write_object: a object, b value */
+    TWIN_MEDDLE,    /* takt_servo_meddle: from now on the image asks */
+    TWIN_EDS        /* takt_servo_set_eds: a bytes follow */
 };
 
 struct twin_order {

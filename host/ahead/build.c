@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* A foot is beside the curve when the way to it is across the path but for this. */
+/* A closest point is beside the curve when the way to it is across the path but for this. */
 #define BESIDE_PART 0.05
 #define BESIDE_MM   1e-6
 
@@ -100,8 +100,8 @@ static double lag_of(const struct problem_window *w, size_t k)
 }
 
 /*
- * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a knot for the path, a cycle for its joints, which are
- * judged by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
+ * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a knot for the path, a cycle for its junctions, which are
+ * verified by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
  * would narrow the tolerance.
  */
 static double radius_of(const struct problem_window *w, const struct ahead_element *e, size_t k,
@@ -114,7 +114,7 @@ static double radius_of(const struct problem_window *w, const struct ahead_eleme
                                          EXCESS_TOLERANCE_PART * e->tolerance_mm - sag_mm));
 }
 
-/* Is x beside its foot, not before or behind it as at a corner? */
+/* Is x beside its closest point, not before or behind it as at a corner? */
 static bool is_beside(const struct problem_ball *ball)
 {
     const double along = vector_dot(ball->offset, ball->along);
@@ -122,32 +122,32 @@ static bool is_beside(const struct problem_ball *ball)
     return maths_abs(along) <= BESIDE_PART * vector_length(ball->offset) + BESIDE_MM;
 }
 
-/* Within reach of its foot: the path may be left sideways only; a corner in no direction. */
+/* Within reach of its closest point: the path may be left sideways only; a corner in no direction. */
 static void set_tube(const struct problem_window *w, struct problem_ball *ball, size_t k,
                      const double weight[4], double place_mm, size_t *hint)
 {
     const struct ahead_element *e;
-    double foot[3];
+    double closest[3];
     double x[3];
 
     *hint = ahead_path_find(w->path, place_mm, *hint);
     e = &w->path->element[*hint];
-    ahead_path_at(w->path, *hint, place_mm, foot, ball->along);
+    ahead_path_at(w->path, *hint, place_mm, closest, ball->along);
     trail_sum(w->trail->tool + k, weight, x);
-    vector_from_to(foot, x, ball->offset);
+    vector_from_to(closest, x, ball->offset);
     if (!is_beside(ball))
         memset(ball->along, 0, sizeof ball->along);
     memcpy(ball->weight, weight, sizeof ball->weight);
     ball->radius_mm = radius_of(w, e, k, 0.5);
 }
 
-/* A stray tool is wherever it has got to: its foot is no farther along the path than twice as far as it is from the tool. */
+/* A stray tool is wherever it has got to: its closest point of the path is no farther along the path than twice as far as it is from the tool. */
 static void set_stray_ball(const struct problem_window *w, struct problem_ball *ball, size_t s,
                            size_t k, const double weight[4], double place_mm, size_t hint)
 {
     const struct trail *t = w->trail;
     const struct ahead_element *e;
-    struct ahead_foot foot;
+    struct ahead_closest closest;
     double tool[3];
     double away[3];
     double x[3];
@@ -155,13 +155,14 @@ static void set_stray_ball(const struct problem_window *w, struct problem_ball *
     trail_sum(t->tool + k, weight, tool);
     trail_sum(t->stray[s] + k, weight, x);
     vector_from_to(tool, x, away);
-    ahead_path_foot(w->path, x, place_mm, EXCESS_REACH_MM + 2 * vector_length(away), hint, &foot);
-    vector_copy(foot.tangent, ball->along);
-    vector_from_to(foot.point, x, ball->offset);
+    ahead_path_closest(w->path, x, place_mm, EXCESS_REACH_MM + 2 * vector_length(away), hint,
+                       &closest);
+    vector_copy(closest.tangent, ball->along);
+    vector_from_to(closest.point, x, ball->offset);
     if (!is_beside(ball))
         memset(ball->along, 0, sizeof ball->along);
     memcpy(ball->weight, weight, sizeof ball->weight);
-    e = &w->path->element[foot.element];
+    e = &w->path->element[closest.element];
     ball->radius_mm = e->exact ? 0 : STRAY_TOLERANCES * radius_of(w, e, k, 0.5);
 }
 
@@ -215,7 +216,7 @@ static void set_strays(struct problem *p, const struct problem_window *w, size_t
     }
 }
 
-/* A curve that has to come near the path's joints, and where its balls are. */
+/* A curve that has to come near the path's junctions, and where its balls are. */
 struct passer {
     double (*control)[3];
     double tolerances;
@@ -289,9 +290,9 @@ static struct problem_ball *free_ball(const struct problem *p, size_t cell, int 
     return &ball[slot];
 }
 
-/* The curve at u comes within reach of a joint; of a bent one sideways, so that it may still move along. */
-static void add_joint(struct problem *p, const struct problem_window *w,
-                      const struct ahead_element *e, const struct passer *by, double u)
+/* The curve at u comes within reach of a junction; of a curved one sideways, so that it may still move along. */
+static void add_junction(struct problem *p, const struct problem_window *w,
+                         const struct ahead_element *e, const struct passer *by, double u)
 {
     const size_t k = (size_t)u;
     struct problem_ball *ball;
@@ -305,14 +306,15 @@ static void add_joint(struct problem *p, const struct problem_window *w,
     trail_sum(by->control + k, ball->weight, ball->along);
     length = vector_length(ball->along);
     for (int i = 0; i < 3; i++)
-        ball->along[i] = e->joint == AHEAD_BENT && length > 0 ? ball->along[i] / length : 0;
+        ball->along[i] = e->junction == AHEAD_CURVED && length > 0 ? ball->along[i] / length : 0;
     trail_weights(u - (double)k, ball->weight);
     trail_sum(by->control + k, ball->weight, x);
     vector_from_to(e->curve.end.at, x, ball->offset);
     ball->radius_mm = by->tolerances * radius_of(w, e, k, w->limits->cycle_s / w->limits->step_s);
 }
 
-static void pass_joints(struct problem *p, const struct problem_window *w, const struct passer *by)
+static void pass_junctions(struct problem *p, const struct problem_window *w,
+                           const struct passer *by)
 {
     const struct trail *t = w->trail;
     const size_t last = 2 * (w->first + p->cells);
@@ -325,21 +327,21 @@ static void pass_joints(struct problem *p, const struct problem_window *w, const
         const double at_mm = w->path->element[k + 1].start_mm;
         const double *end = e->curve.end.at;
 
-        if (e->joint == AHEAD_SMOOTH || (by->stray >= 0 && e->exact))
+        if (e->junction == AHEAD_SMOOTH || (by->stray >= 0 && e->exact))
             continue;
         while (site < last && t->place_mm[site] < at_mm)
             site++;
         const size_t nearest = nearest_site(t, by->control, end, site, first, last);
 
-        add_joint(p, w, e, by, nearest_knot(t, by->control, end, 0.5 * (double)nearest));
+        add_junction(p, w, e, by, nearest_knot(t, by->control, end, 0.5 * (double)nearest));
     }
 }
 
-static void set_joints(struct problem *p, const struct problem_window *w)
+static void set_junctions(struct problem *p, const struct problem_window *w)
 {
-    pass_joints(p, w, &(struct passer){w->trail->tool, 1, -1});
+    pass_junctions(p, w, &(struct passer){w->trail->tool, 1, -1});
     for (int s = 0; s < (int)p->strays; s++)
-        pass_joints(p, w, &(struct passer){w->trail->stray[s], STRAY_TOLERANCES, s});
+        pass_junctions(p, w, &(struct passer){w->trail->stray[s], STRAY_TOLERANCES, s});
 }
 
 static void set_scales(struct problem *p, const struct ahead_limits *l)
@@ -399,5 +401,5 @@ void problem_build(struct problem *p, const struct problem_window *w)
             set_map(&p->map[i], &w->limits->modes, w->trail->control + w->first + i);
         set_strays(p, w, i, place_mm, hint);
     }
-    set_joints(p, w);
+    set_junctions(p, w);
 }

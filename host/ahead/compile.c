@@ -22,28 +22,28 @@
 
 static uint64_t add_number(uint64_t digest, uint64_t number)
 {
-    return fnv_add_double(digest, (double)number);
+    return takt_fnv_add_double(digest, (double)number);
 }
 
 uint64_t compile_digest(uint64_t digest, const struct move *m)
 {
     digest = add_number(digest, (uint64_t)m->kind);
     if (!move_is_motion(m))
-        return fnv_add_double(digest, m->dwell_s);
+        return takt_fnv_add_double(digest, m->dwell_s);
     for (int i = 0; i < AXIS_COUNT; i++)
-        digest = fnv_add_double(digest, m->end.at[i]);
-    digest = fnv_add_double(digest, m->feed_mm_s);
+        digest = takt_fnv_add_double(digest, m->end.at[i]);
+    digest = takt_fnv_add_double(digest, m->feed_mm_s);
     digest = add_number(digest, (uint64_t)m->path);
-    digest = fnv_add_double(digest, m->tolerance_mm);
+    digest = takt_fnv_add_double(digest, m->tolerance_mm);
     digest = add_number(digest, (uint64_t)m->plane);
     digest = add_number(digest, m->turns);
-    digest = fnv_add_double(digest, m->centre_mm[0]);
-    digest = fnv_add_double(digest, m->centre_mm[1]);
-    digest = fnv_add_double(digest, m->base_radius_mm);
+    digest = takt_fnv_add_double(digest, m->centre_mm[0]);
+    digest = takt_fnv_add_double(digest, m->centre_mm[1]);
+    digest = takt_fnv_add_double(digest, m->base_radius_mm);
     if (m->kind != MOVE_SPLINE)
         return digest;
-    digest = fnv_add_double(digest, m->curvature_1_mm[1]);
-    return fnv_add_double(digest, m->spline_mm);
+    digest = takt_fnv_add_double(digest, m->curvature_1_mm[1]);
+    return takt_fnv_add_double(digest, m->spline_mm);
 }
 
 /* The time in which the axes cross the smallest tolerance; 0: nothing is blended. */
@@ -57,7 +57,7 @@ static double crossing_s(const struct compile_config *config)
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         if ((of->axes & (1U << i)) != 0)
             least_s = maths_min(
-                least_s, maths_max(maths_cbrt(config->tolerance_mm / of->jerk_mm_s3[i]),
+                least_s, maths_max(takt_maths_cbrt(config->tolerance_mm / of->jerk_mm_s3[i]),
                                    maths_sqrt(config->tolerance_mm / of->acceleration_mm_s2[i])));
     }
     return least_s;
@@ -68,8 +68,8 @@ static double braking_cycles(const struct compile_config *config)
 {
     struct rate rate;
 
-    rate_init(&rate, &config->limits, 1 - COMPILE_RESERVE_KEPT);
-    return maths_ceil(rate_brake_cycles(&rate) / REPLAY_BRAKE_INTERVALS_MAX);
+    takt_rate_init(&rate, &config->limits, 1 - COMPILE_RESERVE_KEPT);
+    return takt_maths_ceil(takt_rate_brake_cycles(&rate) / REPLAY_BRAKE_INTERVALS_MAX);
 }
 
 /* Third differences of an axis's control points: J h^3 at most, 2 A h^2 and 4 V h. */
@@ -123,7 +123,7 @@ static uint32_t fine_cycles(const struct plan_limits *of, uint32_t cycles)
 /* Knots no farther apart than this. */
 static double most_cycles(const struct compile_config *config, double cycle_s)
 {
-    const double by_size = maths_max(maths_ceil(COMPILE_STEP_S / cycle_s - 1e-9), 1);
+    const double by_size = maths_max(takt_maths_ceil(COMPILE_STEP_S / cycle_s - 1e-9), 1);
     const double by_modes = modes_step_s(&config->vibration) / cycle_s;
 
     return by_size <= by_modes ? by_size : maths_max((double)(uint32_t)by_modes, 1);
@@ -371,15 +371,15 @@ static bool is_exact(const struct move *move)
     return move->path != PATH_BLEND || !(move->tolerance_mm > 0);
 }
 
-/* Is the joint between the last element collected and a curve passed without a change of direction? */
+/* Is the junction between the last element collected and a curve passed without a change of direction? */
 static bool is_tangent(const struct compile *c, const struct curve *next)
 {
     const struct curve *last = &c->path.element[c->path.count - 1].curve;
     struct point in;
     struct point out;
 
-    curve_tangent(last, last->length_mm, &in);
-    curve_tangent(next, 0, &out);
+    takt_curve_tangent(last, last->length_mm, &in);
+    takt_curve_tangent(next, 0, &out);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         if (maths_abs(in.at[i] - out.at[i]) > EXACT_CHANGE)
             return false;
@@ -387,7 +387,7 @@ static bool is_tangent(const struct compile *c, const struct curve *next)
     return true;
 }
 
-/* An exact stop, or a joint that may not be rounded. */
+/* An exact stop, or a junction that may not be rounded. */
 static bool begins_section(const struct compile *c, const struct ahead_element *e)
 {
     if (c->path.count == 0)
@@ -432,7 +432,7 @@ static enum compile_result add_motion(struct compile *c, const struct move *move
     c->blocks++;
     if (why != NULL)
         return unfit(c, move, why);
-    if (!move_curve(move, &c->at, &e.curve))
+    if (!takt_move_curve(move, &c->at, &e.curve))
         return COMPILE_DONE;
     if (turns_rotary(move, &c->at)) /* left to the planner on board, from rest to rest */
         return end_section(c);

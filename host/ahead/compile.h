@@ -46,7 +46,7 @@ struct compile_config {
         text_size; /* of the program, and its CRC-32: for whoever has no time to read it twice */
     uint32_t text_crc;
     double tolerance_part; /* of the tolerance that is used; 0: every section on the exact path */
-    bool stops;            /* at every joint, there */
+    bool stops;            /* at every junction, there */
     double tolerance_mm;   /* the smallest of motions that are blended; 0: none is */
     unsigned workers;
     uint32_t blocks; /* about so many in the program: for the progress */

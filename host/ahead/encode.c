@@ -50,14 +50,14 @@ static void begin_record(struct record *r, enum replay_kind kind)
 
 static void put(struct record *r, uint64_t value, unsigned size)
 {
-    replay_put(r->bytes + r->length, value, size);
+    takt_replay_put(r->bytes + r->length, value, size);
     r->length += size;
 }
 
 static void write_record(struct encoder *e, struct record *r)
 {
-    replay_put(r->bytes + 1, r->length - REPLAY_RECORD_HEAD, 2);
-    e->crc = crc32_add(e->crc, r->bytes, r->length);
+    takt_replay_put(r->bytes + 1, r->length - REPLAY_RECORD_HEAD, 2);
+    e->crc = takt_crc32_add(e->crc, r->bytes, r->length);
     put(r, e->crc, REPLAY_RECORD_TAIL);
     e->failed = fwrite(r->bytes, r->length, 1, e->stream) != 1 || e->failed;
     e->bytes += r->length;
@@ -65,7 +65,7 @@ static void write_record(struct encoder *e, struct record *r)
 
 static int64_t quanta(const struct encoder *e, double mm)
 {
-    return (int64_t)maths_round(mm * (double)(UINT64_C(1) << e->header.quantum_bits));
+    return (int64_t)takt_maths_round(mm * (double)(UINT64_C(1) << e->header.quantum_bits));
 }
 
 static void write_section(struct encoder *e, const struct ahead_path *path, const struct trail *t)
@@ -99,11 +99,12 @@ static uint64_t pass(struct passing *p, double place_mm)
     part = at[p->site + 1] > at[p->site]
                ? (place_mm - at[p->site]) / (at[p->site + 1] - at[p->site])
                : 0;
-    return (uint64_t)maths_ceil(((double)p->site + maths_clamp(part, 0, 1)) * REPLAY_END_PARTS / 2);
+    return (uint64_t)takt_maths_ceil(((double)p->site + maths_clamp(part, 0, 1)) *
+                                     REPLAY_END_PARTS / 2);
 }
 
 /* The interval in which a place lies, its end included. */
-static size_t interval_of(uint64_t end)
+static size_t takt_interval_of(uint64_t end)
 {
     return end > 0 ? (size_t)((end - 1) / REPLAY_END_PARTS) : 0;
 }
@@ -120,7 +121,7 @@ static size_t ends_in(const struct endings *ends, size_t from, size_t interval)
 {
     size_t count = 0;
 
-    while (from + count < ends->count && interval_of(ends->end[from + count]) <= interval)
+    while (from + count < ends->count && takt_interval_of(ends->end[from + count]) <= interval)
         count++;
     return count;
 }
@@ -137,24 +138,24 @@ static unsigned part_of(uint64_t end, size_t interval, unsigned bits)
 static void put_count(struct replay_bits *b, size_t count, unsigned k)
 {
     for (size_t i = 0; i < count >> k; i++)
-        replay_put_bits(b, 1, 1);
-    replay_put_bits(b, 0, 1);
-    replay_put_bits(b, (unsigned)count, k);
+        takt_replay_put_bits(b, 1, 1);
+    takt_replay_put_bits(b, 0, 1);
+    takt_replay_put_bits(b, (unsigned)count, k);
 }
 
 static void put_interval_ends(struct replay_bits *b, const uint64_t *end, size_t count,
                               size_t interval)
 {
     if (count == 1) {
-        replay_put_bits(b, part_of(end[0], interval, REPLAY_END_BITS), REPLAY_END_BITS);
+        takt_replay_put_bits(b, part_of(end[0], interval, REPLAY_END_BITS), REPLAY_END_BITS);
         return;
     }
     if (count == 2)
-        replay_put_bits(b, part_of(end[0], interval, REPLAY_END_BITS_COARSE),
-                        REPLAY_END_BITS_COARSE);
+        takt_replay_put_bits(b, part_of(end[0], interval, REPLAY_END_BITS_COARSE),
+                             REPLAY_END_BITS_COARSE);
     if (count >= 2 && count < REPLAY_ENDS_CROWD)
-        replay_put_bits(b, part_of(end[count - 1], interval, REPLAY_END_BITS_COARSE),
-                        REPLAY_END_BITS_COARSE);
+        takt_replay_put_bits(b, part_of(end[count - 1], interval, REPLAY_END_BITS_COARSE),
+                             REPLAY_END_BITS_COARSE);
 }
 
 /* All ends of some intervals, with the parameter k; returns the bytes. */
@@ -166,7 +167,7 @@ static size_t put_ends(struct record *r, const struct endings *ends, size_t firs
     size_t next = ends->next;
 
     memset(b.bytes, 0, b.size);
-    replay_put_bits(&b, k, REPLAY_RICE_BITS);
+    takt_replay_put_bits(&b, k, REPLAY_RICE_BITS);
     for (size_t i = first; i < first + count; i++) {
         const size_t here = ends_in(ends, next, i);
 
@@ -279,7 +280,7 @@ bool encoder_end(struct encoder *e, uint64_t program)
     begin_record(&r, REPLAY_END);
     write_record(e, &r);
     e->header.program = program;
-    replay_header_write(&e->header, bytes);
+    takt_replay_header_write(&e->header, bytes);
     return !e->failed && fseek(e->stream, 0, SEEK_SET) == 0 &&
            fwrite(bytes, sizeof bytes, 1, e->stream) == 1 && fseek(e->stream, 0, SEEK_END) == 0;
 }

@@ -9,7 +9,7 @@
 /* Blocks beyond the setpoint that are planned. */
 #define LOOK_AHEAD 128
 
-/* Rounding of differences, as the judge has it of jerk. */
+/* Rounding of differences, as the verifier has it of jerk. */
 #define LIMIT_ROOM 1.001
 
 /* The curve is off a bend's setpoints by v^2 step^2 / 6R, a chord by v^2 step^2 / 8R. */
@@ -43,20 +43,20 @@ static void push_next(struct exact *x)
         .curvature_1_mm = {e->shape.curvature_1_mm[0], e->shape.curvature_1_mm[1]},
         .spline_mm = e->shape.spline_mm};
 
-    path_push(&x->path, &move);
+    takt_path_push(&x->path, &move);
     if (++x->pushed == x->of->count)
-        path_finish(&x->path);
+        takt_path_finish(&x->path);
 }
 
 static void plan(struct exact *x)
 {
-    if (motion_wanted(&x->motion) == NULL)
+    if (takt_motion_wanted(&x->motion) == NULL)
         return;
-    path_go_on(&x->path);
-    while (x->pushed < x->of->count && path_has_room(&x->path) &&
-           motion_ahead(&x->motion) < LOOK_AHEAD)
+    takt_path_go_on(&x->path);
+    while (x->pushed < x->of->count && takt_path_has_room(&x->path) &&
+           takt_motion_ahead(&x->motion) < LOOK_AHEAD)
         push_next(x);
-    motion_build(&x->motion);
+    takt_motion_build(&x->motion);
 }
 
 static bool grow(struct exact *x)
@@ -119,7 +119,7 @@ static bool drive(struct exact *x)
 
     while (done && (result == MOTION_CYCLE || result == MOTION_NOT_YET)) {
         plan(x);
-        result = motion_cycle(&x->motion, &as_programmed, &record);
+        result = takt_motion_cycle(&x->motion, &as_programmed, &record);
         if (result == MOTION_CYCLE)
             done = append_cycle(x, &record);
     }
@@ -132,8 +132,8 @@ static bool drive_from_rest_to_rest(struct exact *x)
     const struct point *start = &x->of->element[0].curve.start;
     const struct point *end = &x->of->element[x->of->count - 1].curve.end;
 
-    path_init(&x->path, &x->limits, start);
-    motion_init(&x->motion, &x->path, start, false);
+    takt_path_init(&x->path, &x->limits, start);
+    takt_motion_init(&x->motion, &x->path, start, false);
     return append_rest(x, start, 0, TRAIL_ENDS) && drive(x) &&
            append_rest(x, end, ahead_path_length(x->of), TRAIL_ENDS - 1);
 }
@@ -164,7 +164,7 @@ bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits
     x->limits.chord_error_max_mm = CHORD_PART * smallest_tolerance(path);
     x->trail = trail;
     done = drive_from_rest_to_rest(x);
-    *stalled = motion_stalled_line(&x->motion);
+    *stalled = takt_motion_stalled_line(&x->motion);
     if (done) {
         trail->intervals -= TRAIL_ENDS;
         trail->motor = trail->control;

@@ -13,7 +13,7 @@
 #include "plan/limits.h"
 
 /*
- * stops: at every joint, for a section where a joint that is passed breaks a limit. limits: what may be used of the machine, cycle_s the time between knots.
+ * stops: at every junction, for a section where a junction that is passed breaks a limit. limits: what may be used of the machine, cycle_s the time between knots.
  * False: out of memory, or the planner does not go on in a line, *stalled. The caller frees the trail.
  */
 bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits, bool stops,

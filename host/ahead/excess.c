@@ -5,8 +5,8 @@
 /* What rounding and the solver's last step may leave above the limits the optimiser is given. */
 #define LIMIT_SLACK 3e-4
 
-/* Joints may be farther off than their ball's radius by the solver's last step. */
-#define JOINT_PART 0.99
+/* Junctions may be farther off than their ball's radius by the solver's last step. */
+#define JUNCTION_PART 0.99
 
 /* Likewise stray tools. */
 #define STRAY_PART 0.99
@@ -50,19 +50,20 @@ static double distance_of(const struct problem_window *w, size_t interval, size_
 
     for (int i = 0; i < PARTS; i++) {
         const double part = (double)i / PARTS;
-        struct ahead_foot foot;
+        struct ahead_closest closest;
         double x[3];
 
         trail_at(t, t->tool, (double)interval + part, x);
-        ahead_path_foot(w->path, x, from_mm + part * way_mm, EXCESS_REACH_MM, *hint, &foot);
-        *hint = foot.element;
-        most = maths_max(most, foot.distance_mm / w->path->element[foot.element].tolerance_mm);
+        ahead_path_closest(w->path, x, from_mm + part * way_mm, EXCESS_REACH_MM, *hint, &closest);
+        *hint = closest.element;
+        most =
+            maths_max(most, closest.distance_mm / w->path->element[closest.element].tolerance_mm);
     }
     return most / EXCESS_TOLERANCE_PART;
 }
 
-/* Joints that the curve has to come close to, as the problem has them. */
-static double joint_of(const struct problem_cell *cell)
+/* Junctions that the curve has to come close to, as the problem has them. */
+static double junction_of(const struct problem_cell *cell)
 {
     double most = 0;
 
@@ -70,7 +71,7 @@ static double joint_of(const struct problem_cell *cell)
         if (cell->ball[i].radius_mm > 0)
             most = maths_max(most, vector_length(cell->ball[i].offset) / cell->ball[i].radius_mm);
     }
-    return most * JOINT_PART;
+    return most * JUNCTION_PART;
 }
 
 /* Stray tools at two half knots; that they bend away between them is in the radius. */
@@ -102,7 +103,7 @@ double excess_measure(const struct problem_window *w, const struct problem *p)
 
         here = maths_max(here, limits_of(w->limits, control));
         here = maths_max(here, feed_of(w->limits, control, feed_mm_s));
-        here = maths_max(here, joint_of(&p->cell[i]));
+        here = maths_max(here, junction_of(&p->cell[i]));
         here = maths_max(here, strays_of(p, i));
         w->trail->beyond[w->first + i] = here;
         most = maths_max(most, here);

@@ -25,7 +25,7 @@ struct guess {
 
 static size_t pieces_of(const struct ahead_element *e)
 {
-    return (size_t)maths_clamp(maths_ceil(e->curve.length_mm / PIECE_MM), 1, PIECES_MAX);
+    return (size_t)maths_clamp(takt_maths_ceil(e->curve.length_mm / PIECE_MM), 1, PIECES_MAX);
 }
 
 static void guess_free(struct guess *g)
@@ -72,7 +72,7 @@ static double curvature_of(const struct curve *c)
 
     if (c->kind == CURVE_LINE)
         return 0;
-    curve_bound(c, &b);
+    takt_curve_bound(c, &b);
     return b.radius_min_mm > 0 ? 1 / b.radius_min_mm : 0;
 }
 
@@ -89,7 +89,7 @@ static double feed_at(const struct guess *g, const struct ahead_element *e, cons
 
     if (k > 0) {
         feed = maths_min(feed, maths_sqrt(smallest(g->limits->acceleration_mm_s2) / k));
-        feed = maths_min(feed, maths_cbrt(smallest(g->limits->jerk_mm_s3) / (k * k)));
+        feed = maths_min(feed, takt_maths_cbrt(smallest(g->limits->jerk_mm_s3) / (k * k)));
     }
     return feed;
 }
@@ -117,7 +117,7 @@ static double corner_feed(const struct guess *g, double tolerance_mm, const doub
     if (m < 1e-9)
         return MATHS_INFINITY;
     length = vector_length(d);
-    root = maths_cbrt(6 * tolerance_mm * maths_sqrt(j / m) / length);
+    root = takt_maths_cbrt(6 * tolerance_mm * maths_sqrt(j / m) / length);
     return maths_min(root * root, maths_sqrt(8 * tolerance_mm * a / (m * length)));
 }
 
@@ -165,7 +165,7 @@ static double ramp(const struct guess *g, size_t k, double square)
 {
     const double ds = g->place_mm[k + 1] - g->place_mm[k];
     const double v = maths_sqrt(square);
-    const double root = maths_cbrt(v * maths_sqrt(v) + 0.75 * maths_sqrt(g->jerk[k]) * ds);
+    const double root = takt_maths_cbrt(v * maths_sqrt(v) + 0.75 * maths_sqrt(g->jerk[k]) * ds);
 
     return maths_min(square + 2 * g->rate[k] * ds, root * root * root * root);
 }
@@ -243,8 +243,8 @@ bool guess_trail(const struct ahead_path *path, const struct ahead_limits *limit
         set_nodes(&g);
         limit_ramps(&g);
         set_times(&g);
-        done = trail_allocate(trail,
-                              (size_t)maths_ceil(g.reached_s[g.count - 1] / limits->step_s) + 4, 0);
+        done = trail_allocate(
+            trail, (size_t)takt_maths_ceil(g.reached_s[g.count - 1] / limits->step_s) + 4, 0);
     }
     if (done)
         sample(&g, trail);

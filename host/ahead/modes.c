@@ -57,7 +57,7 @@ static void set_strays(struct ahead_modes *modes, const struct vibration_config 
             const double angle = v.axis[i].mode[0].w_per_s * step_s;
 
             if (angle > 0 && MATHS_PI / angle > (double)modes->rest)
-                modes->rest = (size_t)maths_ceil(MATHS_PI / angle);
+                modes->rest = (size_t)takt_maths_ceil(MATHS_PI / angle);
         }
     }
 }

@@ -8,12 +8,12 @@
 /* A place that is farther along the path by 1 mm counts as farther away by this. */
 #define FAR_ALONG_MM 0.5
 
-/* Cosines between tangents of sharp and of bent joints: 20 and 0.5 degrees. */
-#define SHARP_COSINE 0.94
-#define BENT_COSINE  0.99996
+/* Cosines between tangents of sharp and of curved junctions: 20 and 0.5 degrees. */
+#define SHARP_COSINE  0.94
+#define CURVED_COSINE 0.99996
 
 /* Steps to the nearest place of an arc from a place near by. */
-#define FOOT_STEPS 3
+#define CLOSEST_STEPS 3
 
 void ahead_path_init(struct ahead_path *path)
 {
@@ -53,18 +53,18 @@ static bool grow(struct ahead_path *path)
     return true;
 }
 
-static enum ahead_joint joint_of(const struct curve *before, const struct curve *after)
+static enum ahead_junction junction_of(const struct curve *before, const struct curve *after)
 {
     struct point in;
     struct point out;
     double cosine;
 
-    curve_tangent(before, before->length_mm, &in);
-    curve_tangent(after, 0, &out);
+    takt_curve_tangent(before, before->length_mm, &in);
+    takt_curve_tangent(after, 0, &out);
     cosine = vector_dot(in.at, out.at);
     if (cosine < SHARP_COSINE)
         return AHEAD_SHARP;
-    return cosine < BENT_COSINE ? AHEAD_BENT : AHEAD_SMOOTH;
+    return cosine < CURVED_COSINE ? AHEAD_CURVED : AHEAD_SMOOTH;
 }
 
 bool ahead_path_add(struct ahead_path *path, const struct ahead_element *element)
@@ -75,10 +75,10 @@ bool ahead_path_add(struct ahead_path *path, const struct ahead_element *element
         return false;
     path->element[path->count] = *element;
     path->element[path->count].start_mm = start_mm;
-    path->element[path->count].joint = AHEAD_SMOOTH;
+    path->element[path->count].junction = AHEAD_SMOOTH;
     if (path->count > 0)
-        path->element[path->count - 1].joint =
-            joint_of(&path->element[path->count - 1].curve, &element->curve);
+        path->element[path->count - 1].junction =
+            junction_of(&path->element[path->count - 1].curve, &element->curve);
     path->count++;
     return true;
 }
@@ -117,8 +117,8 @@ void ahead_path_at(const struct ahead_path *path, size_t element, double place_m
     struct point p;
     struct point t;
 
-    curve_point(&e->curve, s_mm, &p);
-    curve_tangent(&e->curve, s_mm, &t);
+    takt_curve_point(&e->curve, s_mm, &p);
+    takt_curve_tangent(&e->curve, s_mm, &t);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         point[i] = p.at[i];
         tangent[i] = t.at[i];
@@ -130,7 +130,7 @@ static double nearest_on_curve(const struct ahead_path *path, size_t k, const do
                                double from_mm, double to_mm, double near_mm)
 {
     double s_mm = maths_clamp(near_mm, from_mm, to_mm);
-    const int steps = path->element[k].curve.kind == CURVE_LINE ? 1 : FOOT_STEPS;
+    const int steps = path->element[k].curve.kind == CURVE_LINE ? 1 : CLOSEST_STEPS;
 
     for (int i = 0; i < steps; i++) {
         double p[3];
@@ -155,13 +155,13 @@ double ahead_path_place(const struct ahead_path *path, size_t element, const dou
 
 /* Compares the nearest place of one element with the best so far. */
 static void try_element(const struct ahead_path *path, size_t k, const double x[3], double place_mm,
-                        double reach_mm, double *best, struct ahead_foot *foot)
+                        double reach_mm, double *best, struct ahead_closest *closest)
 {
     const struct ahead_element *e = &path->element[k];
     const double end_mm = e->start_mm + e->curve.length_mm;
     const double from_mm = maths_clamp(place_mm - reach_mm, e->start_mm, end_mm);
     const double to_mm = maths_clamp(place_mm + reach_mm, from_mm, end_mm);
-    struct ahead_foot here = {.element = k};
+    struct ahead_closest here = {.element = k};
     double way[3];
     double cost;
 
@@ -172,17 +172,18 @@ static void try_element(const struct ahead_path *path, size_t k, const double x[
     cost = here.distance_mm + FAR_ALONG_MM * maths_abs(here.place_mm - place_mm);
     if (cost < *best) {
         *best = cost;
-        *foot = here;
+        *closest = here;
     }
 }
 
-void ahead_path_foot(const struct ahead_path *path, const double x[AXIS_LINEAR_COUNT],
-                     double place_mm, double reach_mm, size_t hint, struct ahead_foot *foot)
+void ahead_path_closest(const struct ahead_path *path, const double x[AXIS_LINEAR_COUNT],
+                        double place_mm, double reach_mm, size_t hint,
+                        struct ahead_closest *closest)
 {
     double best = MATHS_INFINITY;
     size_t k = ahead_path_find(path, place_mm - reach_mm, hint);
 
-    *foot = (struct ahead_foot){.element = k, .place_mm = place_mm, .distance_mm = best};
+    *closest = (struct ahead_closest){.element = k, .place_mm = place_mm, .distance_mm = best};
     for (; k < path->count && path->element[k].start_mm <= place_mm + reach_mm; k++)
-        try_element(path, k, x, place_mm, reach_mm, &best, foot);
+        try_element(path, k, x, place_mm, reach_mm, &best, closest);
 }

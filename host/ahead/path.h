@@ -12,9 +12,9 @@
 #include <stdint.h>
 
 /* How the path goes on from one element to the next. */
-enum ahead_joint {
-    AHEAD_SMOOTH, /* the curve is close to the joint if it is close to the path at every half knot */
-    AHEAD_BENT,   /* it has to be led close to the joint, sideways */
+enum ahead_junction {
+    AHEAD_SMOOTH, /* the curve is close to the junction if it is close to the path at every half knot */
+    AHEAD_CURVED, /* it has to be led close to the junction, sideways */
     AHEAD_SHARP   /* and along the path as well */
 };
 
@@ -36,9 +36,9 @@ struct ahead_element {
     double tolerance_mm; /* largest distance of the setpoints from it */
     uint32_t block;      /* of the motion, from 1 */
     uint32_t line;
-    bool exact;             /* G61: corners are not rounded */
-    bool stop;              /* G61.1: the axes stop at its end */
-    enum ahead_joint joint; /* at its end */
+    bool exact;                   /* G61: corners are not rounded */
+    bool stop;                    /* G61.1: the axes stop at its end */
+    enum ahead_junction junction; /* at its end */
 };
 
 struct ahead_path {
@@ -48,7 +48,7 @@ struct ahead_path {
 };
 
 /* Where on the path something is nearest. */
-struct ahead_foot {
+struct ahead_closest {
     double place_mm; /* along the path */
     double distance_mm;
     size_t element;
@@ -79,7 +79,8 @@ void ahead_path_at(const struct ahead_path *path, size_t element, double place_m
  * The nearest place within reach_mm of place_mm, where farther ones along the path count as a little farther away, so that
  * a path that turns back on itself is not mixed up. hint: an element near by.
  */
-void ahead_path_foot(const struct ahead_path *path, const double x[AXIS_LINEAR_COUNT],
-                     double place_mm, double reach_mm, size_t hint, struct ahead_foot *foot);
+void ahead_path_closest(const struct ahead_path *path, const double x[AXIS_LINEAR_COUNT],
+                        double place_mm, double reach_mm, size_t hint,
+                        struct ahead_closest *closest);
 
 #endif

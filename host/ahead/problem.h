@@ -9,7 +9,7 @@
  *     velocity      |q' + d' + q' e / 2|                                <= V
  *     acceleration  |q" + d" + q" e + q' e' / 2|                        <= A
  *     jerk          |q"' + d"' + q"' e + 3/2 q" e' + q' e" / 2| + J e/2 <= J
- *     tube          |N (q + d - foot)|                                  <= P
+ *     tube          |N (q + d - closest point)|                                  <= P
  *
  * and the time is sum (1 - e / 2 + 3/8 e^2). The bound of jerk is the tangent of J / sqrt(y), which is convex, so that a
  * change of time alone never leads beyond the limits. Every row may be broken at a price, so that there is a solution
@@ -32,7 +32,7 @@
 /* Derivatives that have limits. */
 enum problem_form { FORM_VELOCITY, FORM_ACCELERATION, FORM_JERK, FORM_COUNT };
 
-/* Two half knots, and up to four joints of the path. */
+/* Two half knots, and up to four junctions of the path. */
 #define CELL_BALLS 6
 /* Of a stray tool likewise. */
 #define STRAY_BALLS 4

@@ -9,7 +9,7 @@
 /* The rate's square is not below this, whatever overshoots. */
 #define SQUARE_MIN 0.04
 
-/* How far along the path a foot is looked for: so many times the way of a knot, within bounds. */
+/* How far along the path a closest point is looked for: so many times the way of a knot, within bounds. */
 #define REACH_PART   2.0
 #define REACH_MIN_MM 0.06
 #define REACH_MAX_MM 0.5
@@ -85,7 +85,7 @@ static size_t end_on_a_knot(struct warp *a)
 
     a->stretch = 0;
     plain = whole_time(a);
-    knots = (size_t)maths_ceil(plain - 1e-9);
+    knots = (size_t)takt_maths_ceil(plain - 1e-9);
     if (knots < a->ends + 1)
         knots = a->ends + 1;
     a->stretch = 1;
@@ -227,13 +227,13 @@ static void find_feet(const struct ahead_path *path, struct trail *t)
     for (size_t site = 1; site < 2 * t->intervals; site++) {
         const double way_mm = t->place_mm[site + 1] - t->place_mm[site];
         const double reach_mm = maths_clamp(REACH_PART * way_mm, REACH_MIN_MM, REACH_MAX_MM);
-        struct ahead_foot foot;
+        struct ahead_closest closest;
         double x[3];
 
         trail_at(t, t->tool, 0.5 * (double)site, x);
-        ahead_path_foot(path, x, t->place_mm[site], reach_mm, hint, &foot);
-        hint = foot.element;
-        last_mm = maths_max(last_mm, foot.place_mm);
+        ahead_path_closest(path, x, t->place_mm[site], reach_mm, hint, &closest);
+        hint = closest.element;
+        last_mm = maths_max(last_mm, closest.place_mm);
         t->place_mm[site] = maths_min(last_mm, t->place_mm[2 * t->intervals]);
     }
 }

@@ -4,7 +4,7 @@
  * larger by a few parts in 1000; SHARE leaves room for that.
  *
  * A pair of arcs that begins in A along t and ends in B along u (biarc): with equal lengths d of the tangents from the
- * ends to the tangent at the joint J,
+ * ends to the tangent at the junction J,
  *
  *     v = B - A,   2 d^2 (1 - t . u) + 2 d v . (t + u) - v . v = 0,   J half way from A + d t to B - d u
  */
@@ -68,7 +68,7 @@ static void arc_centre(const double a[2], const double t[2], const double b[2], 
 static unsigned make_arcs(const struct bore_curve *c, double from, double to,
                           struct bore_piece piece[2])
 {
-    double a[2], b[2], t[2], u[2], joint[2];
+    double a[2], b[2], t[2], u[2], junction[2];
 
     c->at(c->context, from, a, t);
     c->at(c->context, to, b, u);
@@ -77,13 +77,13 @@ static unsigned make_arcs(const struct bore_curve *c, double from, double to,
     double d = tangent_length(v, t, u);
 
     for (unsigned i = 0; i < 2; i++)
-        joint[i] = 0.5 * (a[i] + d * t[i] + b[i] - d * u[i]);
+        junction[i] = 0.5 * (a[i] + d * t[i] + b[i] - d * u[i]);
     for (unsigned i = 0; i < 2; i++) {
         piece[i] = (struct bore_piece){.kind = BORE_ARC};
-        memcpy(piece[i].to_mm, i == 0 ? joint : b, sizeof piece[i].to_mm);
+        memcpy(piece[i].to_mm, i == 0 ? junction : b, sizeof piece[i].to_mm);
     }
-    arc_centre(a, t, joint, piece[0].centre_mm);
-    arc_centre(b, back, joint, piece[1].centre_mm);
+    arc_centre(a, t, junction, piece[0].centre_mm);
+    arc_centre(b, back, junction, piece[1].centre_mm);
     return 2;
 }
 
@@ -106,13 +106,14 @@ static double off_piece(const double start[2], const struct bore_piece *piece,
     return maths_abs(way[0] * off[1] - way[1] * off[0]) / maths_sqrt(dot(way, way));
 }
 
-/* Is the point beside the first of two arcs? The joint is the place where both have the same direction. */
-static bool is_before(const double joint[2], const struct bore_piece *first, const double point[2])
+/* Is the point beside the first of two arcs? The junction is the place where both have the same direction. */
+static bool is_before(const double junction[2], const struct bore_piece *first,
+                      const double point[2])
 {
-    double radius[2] = {joint[0] - first->centre_mm[0], joint[1] - first->centre_mm[1]};
-    double off[2] = {point[0] - joint[0], point[1] - joint[1]};
+    double radius[2] = {junction[0] - first->centre_mm[0], junction[1] - first->centre_mm[1]};
+    double off[2] = {point[0] - junction[0], point[1] - junction[1]};
 
-    /* before the joint against the direction there, which is to the left of the radius */
+    /* before the junction against the direction there, which is to the left of the radius */
     return off[1] * radius[0] - off[0] * radius[1] < 0;
 }
 

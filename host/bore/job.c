@@ -65,7 +65,7 @@ static double turns_of(const struct bore_job *job, enum bore_pass pass)
 {
     if (pass == BORE_FINISHING)
         return job->turns;
-    return maths_ceil(circle_mm(job, BORE_ROUGHING) / job->step_mm * (1 - WHOLE_SLACK));
+    return takt_maths_ceil(circle_mm(job, BORE_ROUGHING) / job->step_mm * (1 - WHOLE_SLACK));
 }
 
 /* The cutter goes round the centre, and what it leaves there stands as a core. */
@@ -189,8 +189,8 @@ unsigned bore_depth_steps(const struct bore_job *job)
 {
     if (job->depth_mm == 0 || job->depth_step_mm == 0)
         return 1;
-    return (unsigned)maths_max(1,
-                               maths_ceil(job->depth_mm / job->depth_step_mm * (1 - WHOLE_SLACK)));
+    return (unsigned)maths_max(
+        1, takt_maths_ceil(job->depth_mm / job->depth_step_mm * (1 - WHOLE_SLACK)));
 }
 
 static void spiral_at(const void *context, double parameter, double point_mm[2],
@@ -199,7 +199,7 @@ static void spiral_at(const void *context, double parameter, double point_mm[2],
     const struct bore_spiral *s = context;
 
     bore_spiral_point(s, parameter, point_mm);
-    maths_sincos(parameter + s->turned_rad, &direction[1], &direction[0]);
+    takt_maths_sincos(parameter + s->turned_rad, &direction[1], &direction[0]);
 }
 
 /* About the origin; the parameter is the heading. */
@@ -208,7 +208,7 @@ static void circle_at(const void *context, double parameter, double point_mm[2],
 {
     const struct bore_spiral *s = context;
 
-    maths_sincos(parameter, &direction[1], &direction[0]);
+    takt_maths_sincos(parameter, &direction[1], &direction[0]);
     point_mm[0] = s->radius_mm * direction[1];
     point_mm[1] = -s->radius_mm * direction[0];
 }

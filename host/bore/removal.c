@@ -83,8 +83,8 @@ static double clear(struct sweep *s, const double at_mm[2])
 /* Between two angles of the edge. */
 static double edge_mm(const struct sweep *s, double x_mm, double y_mm, bool before)
 {
-    double angle = maths_atan2(y_mm, x_mm) / ANGLE_RAD + ANGLES;
-    double part = angle - maths_floor(angle);
+    double angle = takt_maths_atan2(y_mm, x_mm) / ANGLE_RAD + ANGLES;
+    double part = angle - takt_maths_floor(angle);
     const struct edge *a = edge_at(s, (long)angle);
     const struct edge *b = edge_at(s, (long)angle + 1);
 
@@ -105,7 +105,7 @@ static double layer_at(const struct sweep *s, const double at_mm[2], double head
     double most_mm = 2 * s->cutter_mm;
     double sine, cosine;
 
-    maths_sincos(heading_rad, &sine, &cosine);
+    takt_maths_sincos(heading_rad, &sine, &cosine);
     for (unsigned i = 0; i < HALVINGS; i++) {
         double layer_mm = 0.5 * (least_mm + most_mm);
         double side_mm = s->cutter_mm - layer_mm;
@@ -125,7 +125,7 @@ static double engaged_at(const struct sweep *s, const double at_mm[2], double he
         double angle = heading_rad + MATHS_PI * ((i + 0.5) / POINTS - 0.5);
         double sine, cosine;
 
-        maths_sincos(angle, &sine, &cosine);
+        takt_maths_sincos(angle, &sine, &cosine);
         inside +=
             is_material(s, at_mm[0] + s->cutter_mm * cosine, at_mm[1] + s->cutter_mm * sine, false);
     }
@@ -162,7 +162,7 @@ static bool reach_window(struct bore_removal *r, double turns, const struct swee
 
 static double unwound(double angle_rad)
 {
-    return angle_rad - MATHS_TWO_PI * maths_floor(angle_rad / MATHS_TWO_PI + 0.5);
+    return angle_rad - MATHS_TWO_PI * takt_maths_floor(angle_rad / MATHS_TWO_PI + 0.5);
 }
 
 static bool advance(struct bore_removal *r, struct sweep *s, const double at_mm[2])
@@ -170,7 +170,7 @@ static bool advance(struct bore_removal *r, struct sweep *s, const double at_mm[
     double dx = at_mm[0] - s->at_mm[0];
     double dy = at_mm[1] - s->at_mm[1];
     double way_mm = maths_sqrt(dx * dx + dy * dy);
-    double heading_rad = maths_atan2(dy, dx);
+    double heading_rad = takt_maths_atan2(dy, dx);
 
     if (way_mm < STEP_RATIO * s->cutter_mm)
         return true;
@@ -186,7 +186,9 @@ static bool advance(struct bore_removal *r, struct sweep *s, const double at_mm[
     return true;
 }
 
-/* A level where the cutter stands, and its way since, for so many turns. first_mm2: what its first disc has removed. */
+/*
+ * A level where the cutter stands, and its way since, for this many turns. first_mm2: what its first disc has removed.
+ */
 static bool sweep_level(struct bore_removal *r, const struct bore_track *t, size_t first,
                         double cutter_mm, double turns, double *first_mm2)
 {
@@ -198,7 +200,7 @@ static bool sweep_level(struct bore_removal *r, const struct bore_track *t, size
         s->at_mm[0] = t->at_mm[first][0];
         s->at_mm[1] = t->at_mm[first][1];
         for (unsigned i = 0; i < ANGLES; i++)
-            maths_sincos(i * ANGLE_RAD, &s->edge[i].unit[1], &s->edge[i].unit[0]);
+            takt_maths_sincos(i * ANGLE_RAD, &s->edge[i].unit[1], &s->edge[i].unit[0]);
         *first_mm2 = clear(s, s->at_mm);
         for (unsigned i = 0; i < ANGLES && first == 0; i++) /* the hole to begin in */
             s->edge[i].before_mm = cutter_mm;
@@ -227,7 +229,7 @@ static size_t reached(const struct bore_track *t, double down_mm)
     return i;
 }
 
-/* A level's part of the mean; it begins behind in the turn by so many windows. */
+/* A level's part of the mean; it begins this many windows behind in the turn. */
 static void add_level(struct bore_removal *r, const struct bore_removal *level, size_t behind)
 {
     for (size_t i = 0; i < level->count && i < BORE_WINDOWS_PER_TURN; i++) {
@@ -254,7 +256,7 @@ static bool make_level(struct bore_removal *level, const struct bore_track *t, d
     return true;
 }
 
-/* Windows of so many turns, the first turn's as they are in the others. */
+/* Windows of this many turns, the first turn's as they are in the others. */
 static bool add_turns(struct bore_removal *r, unsigned turns)
 {
     for (size_t i = 0; i < (size_t)turns * BORE_WINDOWS_PER_TURN; i++) {

@@ -6,7 +6,7 @@
 
 #include "bore/track.h"
 
-/* A short piece of the way: a window of so many of the turns that the direction of motion makes. */
+/* A short piece of the way, a window: this many make a turn of the direction of motion. */
 #define BORE_WINDOWS_PER_TURN 72
 
 struct bore_window {

@@ -1,7 +1,7 @@
 /*
  * Joined arcs about p poles (p = 2: half circles, p = 4: quarter circles). The radius grows by a = R / (n p) from arc to
  * arc. Arc k, k = 1 ... n p - 1, turns from the angle 2 pi k / p to 2 pi (k + 1) / p about c_k; for the next one to go on
- * in the same direction its pole is on the line through the joint and c_k:
+ * in the same direction its pole is on the line through the junction and c_k:
  *
  *     radius_k = k a,     c_0 = 0,     c_{k+1} = c_k - a (cos alpha, sin alpha),   alpha = 2 pi (k + 1) / p
  *
@@ -24,7 +24,7 @@ static void joined_arcs(struct bore_path *p, double radius_mm, unsigned turns, u
         double angle = MATHS_TWO_PI * ((k + 1) % poles) / poles;
         double u[2], to[2];
 
-        maths_sincos(angle, &u[1], &u[0]);
+        takt_maths_sincos(angle, &u[1], &u[0]);
         for (unsigned i = 0; i < 2; i++)
             to[i] = centre[i] + k * a * u[i];
         if (k > 0)
@@ -42,7 +42,7 @@ static void archimedes_at(const void *context, double theta, double point_mm[2],
     double root = maths_sqrt(1 + theta * theta);
     double sine, cosine;
 
-    maths_sincos(theta, &sine, &cosine);
+    takt_maths_sincos(theta, &sine, &cosine);
     point_mm[0] = *a * theta * cosine;
     point_mm[1] = *a * theta * sine;
     direction[0] = (cosine - theta * sine) / root;

@@ -34,10 +34,10 @@ void bore_spiral_set(struct bore_spiral *s, double radius_mm, unsigned turns)
  */
 static void unit_point(double phi, double point[2])
 {
-    const double half = maths_sin(0.5 * phi);
+    const double half = takt_maths_sin(0.5 * phi);
 
-    point[0] = phi * maths_sin(phi) - 2.0 * half * half;
-    point[1] = maths_sin(phi) - phi * maths_cos(phi);
+    point[0] = phi * takt_maths_sin(phi) - 2.0 * half * half;
+    point[1] = takt_maths_sin(phi) - phi * takt_maths_cos(phi);
 }
 
 double bore_spiral_distance(double base_mm, double unrolled_rad)
@@ -51,7 +51,7 @@ double bore_spiral_distance(double base_mm, double unrolled_rad)
 /* Newton's next phi: the slope is r^2 phi 2 sin^2(phi / 2) / rho. */
 static double newton(double base_mm, double phi, double distance_mm, double error_mm)
 {
-    const double half = maths_sin(0.5 * phi);
+    const double half = takt_maths_sin(0.5 * phi);
     const double slope = base_mm * base_mm * phi * 2.0 * half * half / distance_mm;
 
     return slope > 0.0 ? phi - error_mm / slope : -1.0;
@@ -100,7 +100,7 @@ void bore_spiral_begin_at(struct bore_spiral *s, const double start_mm[2])
     s->start_rad = bore_unrolled(s->base_mm, s->turns, distance_mm);
     if (distance_mm > 0.0) {
         unit_point(s->start_rad, p);
-        s->turned_rad = maths_atan2(start_mm[1], start_mm[0]) - maths_atan2(p[1], p[0]);
+        s->turned_rad = takt_maths_atan2(start_mm[1], start_mm[0]) - takt_maths_atan2(p[1], p[0]);
     }
 }
 
@@ -125,7 +125,7 @@ void bore_spiral_point(const struct bore_spiral *s, double unrolled_rad, double 
     double cosine;
 
     unit_point(unrolled_rad, p);
-    maths_sincos(s->turned_rad, &sine, &cosine);
+    takt_maths_sincos(s->turned_rad, &sine, &cosine);
     point_mm[0] = s->base_mm * (p[0] * cosine - p[1] * sine);
     point_mm[1] = s->base_mm * (p[0] * sine + p[1] * cosine);
 }
@@ -143,7 +143,7 @@ void bore_spiral_base_centre(const struct bore_spiral *s, double centre_mm[2])
     double sine;
     double cosine;
 
-    maths_sincos(s->turned_rad, &sine, &cosine);
+    takt_maths_sincos(s->turned_rad, &sine, &cosine);
     centre_mm[0] = -s->base_mm * cosine;
     centre_mm[1] = -s->base_mm * sine;
 }

@@ -226,7 +226,7 @@ static void draw_verdict(struct bus *bus, const struct bus_waiting *frame, uint6
     }
 }
 
-/* Of the first bits of a frame. */
+/* Time of the first bits of a frame. */
 static uint64_t first_bits_ns(const struct bus *bus, const struct frame_levels *levels,
                               unsigned count)
 {

@@ -53,10 +53,10 @@ struct frame_rates {
     uint32_t nominal, data;
 };
 
-/* Of a frame of any kind, exactly; without intermission. */
+/* Length of a frame of any kind, exactly; without intermission. */
 struct frame_length frame_bits_count_wire(const struct frame_bits *tables,
                                           const struct wire_frame *frame);
-/* Of a frame of a port; fd: one that speaks CAN FD. */
+/* Length of a frame of a port; fd: one that speaks CAN FD. */
 struct frame_length frame_bits_count_port(const struct frame_bits *tables,
                                           const struct can_frame *frame, bool fd);
 

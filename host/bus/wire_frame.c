@@ -25,7 +25,7 @@ bool wire_frame_to_can(const struct wire_frame *wire, struct can_frame *can)
     return true;
 }
 
-/* Of codes above CAN_CLASSIC_MAX. */
+/* Lengths of codes above CAN_CLASSIC_MAX. */
 static const uint8_t long_lengths[] = {12, 16, 20, 24, 32, 48, WIRE_DATA_MAX};
 #define LONG_LENGTHS (sizeof long_lengths - 1)
 

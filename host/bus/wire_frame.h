@@ -34,14 +34,16 @@ struct wire_listener {
     void *context;
 };
 
-/* Of a port that speaks CAN FD: with these flags, filled up with zeros to a length that there is. A remote frame never is. */
+/*
+ * A frame of a port that speaks CAN FD has these flags, and zeros up to a length that there is. A remote frame never.
+ */
 #define WIRE_KIND_FD (WIRE_FD | WIRE_RATE_SWITCH)
 void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can, bool fd);
 
 /* False: the frame is none that the firmware knows. */
 bool wire_frame_to_can(const struct wire_frame *wire, struct can_frame *can);
 
-/* The least FD length that holds so many bytes; WIRE_DATA_MAX above it. */
+/* The least FD length that holds this many bytes; WIRE_DATA_MAX above it. */
 uint8_t wire_frame_fd_length(unsigned bytes);
 /* The code of such a length, 0 ... 15. */
 unsigned wire_frame_fd_code(unsigned length);

@@ -10,7 +10,7 @@
 static void harmonics(double angle_rad, double h[3])
 {
     h[0] = 1;
-    maths_sincos(angle_rad, &h[2], &h[1]);
+    takt_maths_sincos(angle_rad, &h[2], &h[1]);
 }
 
 /* m x = b, m symmetric and positive, by elimination. */
@@ -96,7 +96,7 @@ static double degrees_behind(const struct circle_place *place, unsigned quadrant
 {
     const double turns = place->angle_rad / MATHS_TWO_PI - quadrant / (double)CIRCLE_QUADRANTS;
 
-    return 360.0 * (turns - maths_round(turns));
+    return 360.0 * (turns - takt_maths_round(turns));
 }
 
 static double mean_between(const struct circle_turn *turn, const struct circle_figures *f,

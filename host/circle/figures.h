@@ -29,7 +29,7 @@ struct circle_figures {
     struct circle_reversal reversal[CIRCLE_QUADRANTS];
 };
 
-/* Of turns together: G (b) of both ways. Reversals are those of the first. No place: all 0. */
+/* Figures of turns together: G (b) of both ways. Reversals are those of the first. No place: all 0. */
 void circle_figures_of(const struct circle_turn *const turn[], unsigned turns,
                        struct circle_figures *figures);
 

@@ -9,7 +9,7 @@
 #define HEIGHT    760
 #define RADIUS_PX 200.0 /* of the programmed circle */
 #define STEP_PX   25.0  /* of a division, */
-#define STEPS     4     /* of which so many are drawn to either side */
+#define STEPS     4     /* of which this many are drawn to either side */
 
 /* Places drawn of a turn: more would not be seen. */
 #define PLACES 7200
@@ -70,7 +70,7 @@ static void draw_turn(const struct plot *plot, const struct circle_turn *turn, c
         const double r = RADIUS_PX + plot->px_per_mm * turn->place[k].out_mm;
         double sine, cosine;
 
-        maths_sincos(turn->place[k].angle_rad, &sine, &cosine);
+        takt_maths_sincos(turn->place[k].angle_rad, &sine, &cosine);
         (void)fprintf(plot->file, "%.2f,%.2f ", WIDTH / 2.0 + r * cosine, CENTRE_Y - r * sine);
     }
     (void)fputs("\"/>\n", plot->file);
@@ -79,7 +79,7 @@ static void draw_turn(const struct plot *plot, const struct circle_turn *turn, c
 /* In um, without a minus before 0.00. */
 static double shown_um(double mm)
 {
-    return maths_round(1e5 * mm) / 100 + 0.0;
+    return takt_maths_round(1e5 * mm) / 100 + 0.0;
 }
 
 static void write_figures(FILE *file, const char *name, const struct circle_figures *f, double y)

@@ -26,7 +26,7 @@ static bool make_room(struct circle_turn *turn)
 void circle_turn_add(struct circle_turn *turn, const double from_centre_mm[2])
 {
     const double x = from_centre_mm[0], y = from_centre_mm[1];
-    const double angle = maths_atan2(y, x);
+    const double angle = takt_maths_atan2(y, x);
 
     if (!make_room(turn))
         return;

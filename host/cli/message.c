@@ -192,7 +192,7 @@ static void message_diagnostic(const char *kind, const struct program_text *prog
     if (meaning != NULL)
         (void)snprintf(text, sizeof text, "'%s' is not supported: %s", diagnostic->word, meaning);
     else
-        diagnostic_text(diagnostic, text);
+        takt_diagnostic_text(diagnostic, text);
     /* Column 0 is the whole line, which begins at 1. */
     message_tell(
         &(struct message){kind, name, line, line > 0 && column == 0 ? 1 : column, text, cure});
@@ -228,8 +228,8 @@ void message_controller_warning(const struct controller *controller)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    if (controller_get_warning(controller)->code == TAKT_OK)
+    if (takt_controller_get_warning(controller)->code == TAKT_OK)
         return;
-    (void)diagnostic_text(controller_get_warning(controller), text);
+    (void)takt_diagnostic_text(takt_controller_get_warning(controller), text);
     message_command_warning("%s", text);
 }

@@ -12,7 +12,7 @@
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "cli/text.h"
-#include "compiled/compiled_judge.h"
+#include "compiled/compiled_verifier.h"
 #include "config/shaper.h"
 #include "replay/fit.h"
 
@@ -54,9 +54,9 @@ void compiled_limits(const struct session *s, const struct point *start, struct 
     static _Thread_local struct correction correction;
 
     shaper_plan_limits(&s->setup, limits);
-    correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
-                    s->correction, start);
-    controller_reserve_correction(&correction, &s->setup.machine, limits);
+    takt_correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
+                         s->correction, start);
+    takt_controller_reserve_correction(&correction, &s->setup.machine, limits);
 }
 
 bool compiled_check_machine(const struct session *s)
@@ -112,7 +112,8 @@ static enum compile_result add_moves(struct making *m)
     struct move move;
 
     while (result == COMPILE_DONE &&
-           offset_next(&m->reading.offset, &m->reading.program, &move, &error) == PROGRAM_MOVE)
+           takt_cutter_compensation_next(&m->reading.offset, &m->reading.program, &move, &error) ==
+               PROGRAM_MOVE)
         result = compile_add(&m->compile, &move);
     return result == COMPILE_DONE ? compile_end(&m->compile) : result;
 }
@@ -128,7 +129,7 @@ static void set_text(const struct session *s, struct compile_config *config)
     program_text_read(&s->program, &reader, &source);
     config->text_crc = CRC32_START;
     while ((length = source.read(source.context, bytes, sizeof bytes)) > 0) {
-        config->text_crc = crc32_add(config->text_crc, bytes, (size_t)length);
+        config->text_crc = takt_crc32_add(config->text_crc, bytes, (size_t)length);
         config->text_size += (uint32_t)length;
     }
 }
@@ -151,8 +152,8 @@ static enum command_status compile(struct making *m, const struct session *s,
     enum compile_result result;
 
     session_begin_reading(s, &m->reading, &program, &source);
-    program_open(&m->reading.program, &program, &source);
-    offset_open(&m->reading.offset, &program);
+    takt_program_open(&m->reading.program, &program, &source);
+    takt_cutter_compensation_open(&m->reading.offset, &program);
     compiled_limits(s, &program.start, &config.limits);
     shaper_planned_modes(&s->setup, &config.vibration);
     set_text(s, &config);
@@ -171,7 +172,7 @@ static bool empty(FILE *stream)
     return ftruncate(fileno(stream), 0) == 0;
 }
 
-/* Compiled and judged. */
+/* Compiled and verified. */
 static enum command_status make(const struct session *s, const struct session_totals *totals,
                                 uint32_t ceiling_percent, const struct attempt *attempt,
                                 FILE *stream, struct compiled_figures *figures)
@@ -189,14 +190,14 @@ static enum command_status make(const struct session *s, const struct session_to
     figures->bytes = m->compile.encoder.bytes;
     compile_free(&m->compile);
     free(m);
-    return status == STATUS_DONE ? compiled_judge(s, stream, figures) : status;
+    return status == STATUS_DONE ? compiled_verifier(s, stream, figures) : status;
 }
 
 enum command_status compiled_make(const struct session *s, const struct session_totals *totals,
                                   uint32_t ceiling_percent, FILE *stream,
                                   struct compiled_figures *figures)
 {
-    /* What the judge refuses is made with less of the tolerance, then on the exact path, at last with a stop at each joint. */
+    /* What the verifier refuses is made with less of the tolerance, then on the exact path, at last with a stop at each junction. */
     static const struct attempt attempts[] = {
         {1, false}, {0.8, false}, {0.4, false}, {0, false}, {0, true}};
     const uint64_t start_ns = stopwatch_now_ns();
@@ -236,9 +237,10 @@ static uint64_t digest_of(const struct session *s)
     uint64_t digest = FNV_START;
 
     session_begin_reading(s, &reading, &config, &source);
-    program_open(&reading.program, &config, &source);
-    offset_open(&reading.offset, &config);
-    while (offset_next(&reading.offset, &reading.program, &move, &error) == PROGRAM_MOVE)
+    takt_program_open(&reading.program, &config, &source);
+    takt_cutter_compensation_open(&reading.offset, &config);
+    while (takt_cutter_compensation_next(&reading.offset, &reading.program, &move, &error) ==
+           PROGRAM_MOVE)
         digest = compile_digest(digest, &move);
     return digest;
 }
@@ -247,7 +249,7 @@ static bool report(const struct compiled *c, const struct diagnostic *why)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    (void)diagnostic_text(why, text);
+    (void)takt_diagnostic_text(why, text);
     message_error(c->name, 0, 0, "%s: takt compile writes what fits", text);
     return false;
 }
@@ -260,7 +262,7 @@ static bool fits_machine(const struct compiled *c, const struct session *s,
     struct diagnostic why;
 
     compiled_limits(s, &start, &here.limits);
-    return replay_fit_machine(h, &here, &why) || report(c, &why);
+    return takt_replay_fit_machine(h, &here, &why) || report(c, &why);
 }
 
 /* Every record's checksum, before anything moves. */
@@ -269,17 +271,17 @@ static bool is_whole(const struct compiled *c)
     static _Thread_local struct intake intake;
     struct diagnostic why;
 
-    intake_open(&intake, &c->source);
+    takt_intake_open(&intake, &c->source);
     do {
         intake.intervals_taken = intake.intervals_came;
         intake.ends_taken = intake.ends_came;
         intake.sections_taken = intake.sections_came;
-        intake_read(&intake);
+        takt_intake_read(&intake);
     } while (intake.fault == REPLAY_GOOD && !intake.ended &&
              intake.intervals_taken != intake.intervals_came);
     if (intake.fault == REPLAY_GOOD && intake.ended)
         return true;
-    diagnostic_set(&why, TAKT_ERROR_PLAN_DAMAGED, 0, 0, "", 0, 0.0);
+    takt_diagnostic_set(&why, TAKT_ERROR_PLAN_DAMAGED, 0, 0, "", 0, 0.0);
     return report(c, &why);
 }
 
@@ -290,7 +292,7 @@ static bool read_header(const struct compiled *c, struct replay_header *h)
     const size_t got = fread(bytes, 1, sizeof bytes, c->stream);
 
     memset(bytes + got, 0, sizeof bytes - got); /* what is missing is 0, and damaged */
-    return replay_fit_read(h, bytes, &why) || report(c, &why);
+    return takt_replay_fit_read(h, bytes, &why) || report(c, &why);
 }
 
 static enum command_status check_file(const struct compiled *c, const struct session *s)

@@ -1,18 +1,18 @@
 /*
- * Compiled programs: planned ahead of the run (room ahead), judged, kept in a file, replayed (room replay).
+ * Compiled programs: planned ahead of the run (room ahead), verified, kept in a file, replayed (room replay).
  */
 #ifndef TAKT_HOST_COMPILED_H
 #define TAKT_HOST_COMPILED_H
 
-#include "judge/tube_judge.h"
 #include "replay/intake.h"
 #include "session/session.h"
+#include "verifier/tube_verifier.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
-/* What the judge found of a compiled program, replayed as compiled. */
+/* What the verifier found of a compiled program, replayed as compiled. */
 struct compiled_figures {
     uint64_t cycles;
     uint32_t blocks;
@@ -37,7 +37,7 @@ struct compiled_figures {
 bool compiled_read_ceiling(const struct options *options, uint32_t *percent);
 
 /*
- * Compiles the session's program into an open file, and judges what is there: STATUS_DONE; else after a message. What is
+ * Compiles the session's program into an open file, and verifies what is there: STATUS_DONE; else after a message. What is
  * in the file then is worth nothing.
  */
 enum command_status compiled_make(const struct session *s, const struct session_totals *totals,

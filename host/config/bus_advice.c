@@ -20,8 +20,8 @@ static bool carries(const struct machine *machine, uint32_t bitrate, uint32_t da
     other.can_bitrate = bitrate;
     other.can_data_bitrate = data_bitrate;
     other.cycle_us = cycle_us;
-    for (unsigned bus = 0; bus < machine_bus_count(&other); bus++)
-        good = good && machine_predict_load(&other, bus, &load);
+    for (unsigned bus = 0; bus < takt_machine_bus_count(&other); bus++)
+        good = good && takt_machine_predict_load(&other, bus, &load);
     return good;
 }
 

@@ -16,7 +16,7 @@ static bool load(struct text *text, struct concise_dcf *dcf, const char *path)
     }
     *dcf = (struct concise_dcf){.bytes = (const uint8_t *)text->bytes,
                                 .length = (uint32_t)text->length};
-    if (concise_dcf_is_well(dcf, &object))
+    if (takt_concise_dcf_is_well(dcf, &object))
         return true;
     if (object != 0)
         message_error(path, 0, 0, "the entry of object %04X:%02X has no value of 1 to %d bytes",

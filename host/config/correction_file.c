@@ -13,14 +13,14 @@ static void report(const char *path, const struct diagnostic *wrong)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    (void)diagnostic_text(wrong, text);
+    (void)takt_diagnostic_text(wrong, text);
     message_error(path, wrong->line, wrong->line > 0 && wrong->column == 0 ? 1 : wrong->column,
                   "%s", text);
 }
 
 static void set_rules(const struct machine *machine, struct table_rules *rules)
 {
-    correction_table_rules(&machine->correction, machine_axes(machine), rules);
+    takt_correction_table_rules(&machine->correction, takt_machine_axes(machine), rules);
 }
 
 bool correction_file_read(struct table *table, const char *path, const struct machine *machine)
@@ -33,7 +33,7 @@ bool correction_file_read(struct table *table, const char *path, const struct ma
     if (!text_read(&text, path))
         return false;
     set_rules(machine, &rules);
-    good = table_read_text(text.bytes, text.length, &rules, table, &wrong);
+    good = takt_table_read_text(text.bytes, text.length, &rules, table, &wrong);
     if (!good)
         report(path, &wrong);
     text_free(&text);
@@ -52,7 +52,8 @@ bool correction_file_read_triplets(struct table *table, const char *path, enum a
     if (!text_read(&text, path))
         return false;
     set_rules(machine, &rules);
-    good = table_read_triplets(text.bytes, text.length, axis, type, unit, &rules, table, &wrong);
+    good =
+        takt_table_read_triplets(text.bytes, text.length, axis, type, unit, &rules, table, &wrong);
     if (!good)
         report(path, &wrong);
     text_free(&text);
@@ -68,7 +69,7 @@ static bool load_volume(struct correction_tables *tables, struct table *table,
         return true;
     if (!correction_file_read(table, setup->volume_table, &setup->machine))
         return false;
-    if (grid_set(&tables->volume, table, &wrong))
+    if (takt_grid_set(&tables->volume, table, &wrong))
         return true;
     report(setup->volume_table, &wrong);
     return false;
@@ -89,7 +90,7 @@ static bool load_axis(struct correction_tables *tables, struct table *table,
                       AXIS_LETTERS[table->input[0]], AXIS_LETTERS[axis]);
         return false;
     }
-    if (!table->errors && axis_tables_add(&tables->axes, table, &wrong))
+    if (!table->errors && takt_axis_tables_add(&tables->axes, table, &wrong))
         return true;
     if (table->errors)
         message_error(path, 0, 0, "errors of a unit (columns E...) belong to unit_table_%c",
@@ -120,7 +121,7 @@ static bool load_unit(struct geometry *geometry, struct table *table,
                       AXIS_LETTERS[table->input[0]], AXIS_LETTERS[axis]);
         return false;
     }
-    if (geometry_add(geometry, table, &wrong))
+    if (takt_geometry_add(geometry, table, &wrong))
         return true;
     report(path, &wrong);
     return false;
@@ -143,7 +144,7 @@ static bool load_geometry(struct loaded *loaded, struct table *table,
 {
     struct geometry *g = &loaded->geometry;
 
-    geometry_init(g);
+    takt_geometry_init(g);
     (void)machine_setup_chain(setup, &g->chain);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         g->tool_mm[i] = setup->known_geometry.tool_mm[i];
@@ -172,11 +173,11 @@ static bool check_share(const struct correction_tables *tables, const struct mac
         message_command_error("out of memory");
         return false;
     }
-    correction_init(correction, &machine->correction, machine_axes(machine),
-                    1e-6 * (double)machine->cycle_us, tables, &start);
-    machine_motion_bound(machine, &most);
-    correction_reserve(correction, &most, &need);
-    share = correction_largest_share(&need, &most, &axis);
+    takt_correction_init(correction, &machine->correction, takt_machine_axes(machine),
+                         1e-6 * (double)machine->cycle_us, tables, &start);
+    takt_machine_motion_bound(machine, &most);
+    takt_correction_reserve(correction, &most, &need);
+    share = takt_correction_largest_share(&need, &most, &axis);
     free(correction);
     if (share <= CORRECTION_SHARE_MAX)
         return true;
@@ -242,7 +243,7 @@ bool correction_file_write(const struct table *table, const char *path, const ch
 
     if (!output_file_open(&file, path))
         return false;
-    table_write_text(table, comment,
-                     &(struct table_sink){.context = file.stream, .write = write_to_file});
+    takt_table_write_text(table, comment,
+                          &(struct table_sink){.context = file.stream, .write = write_to_file});
     return output_file_finish(&file) && output_file_place(&file);
 }

@@ -60,13 +60,13 @@ bool data_sheet_set_machine(struct virtual_drives_config *config, const struct m
             !add_drive(config, setup, i, &sheet[i]))
             return false;
     }
-    for (unsigned i = 0; i < machine_gantry_count(&setup->machine); i++) {
+    for (unsigned i = 0; i < takt_machine_gantry_count(&setup->machine); i++) {
         const unsigned index = MACHINE_SECOND_DRIVE + i;
 
         if (!add_drive(config, setup, index, &sheet[index]))
             return false;
     }
-    for (unsigned i = 0; i < machine_io_count(&setup->machine); i++)
+    for (unsigned i = 0; i < takt_machine_io_count(&setup->machine); i++)
         data_sheet_set_io(&config->drive[config->count++], &setup->machine.io[i]);
     return true;
 }

@@ -457,7 +457,7 @@ static void write_codes(FILE *file, const struct dialect_codes *codes)
 
 static void write_io_nodes(FILE *file, const struct machine_setup *setup)
 {
-    for (unsigned i = 0; i < machine_io_count(&setup->machine); i++) {
+    for (unsigned i = 0; i < takt_machine_io_count(&setup->machine); i++) {
         (void)fprintf(file, "\n[io %u]\n", i + 1);
         write_section(file, setup, (struct machine_place){SECTION_IO, i});
     }
@@ -488,7 +488,7 @@ void machine_file_write(FILE *file, const struct machine_setup *setup)
     write_places_of_axes(file, setup, SECTION_AXIS);
     write_places_of_axes(file, setup, SECTION_DRIVE);
     write_places_of_axes(file, setup, SECTION_STEPPER);
-    for (unsigned i = 0; i < machine_gantry_count(&setup->machine); i++)
+    for (unsigned i = 0; i < takt_machine_gantry_count(&setup->machine); i++)
         write_gantry(file, setup, i);
     write_io_nodes(file, setup);
     write_codes(file, &setup->codes);

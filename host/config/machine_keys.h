@@ -41,7 +41,7 @@ enum machine_key_type {
     KEY_DRIVE_TYPE,
     KEY_STEP_FORM,
     KEY_SHAPER,
-    KEY_LAW,
+    KEY_RAMP_PROFILE,
     KEY_LANDING,
     KEY_LIMITER,
     KEY_OVERRIDE_METHOD,

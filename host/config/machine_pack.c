@@ -63,12 +63,13 @@ enum command_status machine_pack_write(const struct machine_setup *setup, const 
         configuration_files_free(&files);
         return STATUS_INPUT;
     }
-    size = settings_pack(&setup->machine, tables, files.dcf, packed.bytes, sizeof packed.bytes);
+    size =
+        takt_settings_pack(&setup->machine, tables, files.dcf, packed.bytes, sizeof packed.bytes);
     if (size == 0) {
         message_command_error("the settings take more than %u bytes", BYTES_MAX);
         status = STATUS_INPUT;
     } else {
-        store_make_head(packed.bytes, (uint32_t)size, FIRST_SEQUENCE, packed.head);
+        takt_store_make_head(packed.bytes, (uint32_t)size, FIRST_SEQUENCE, packed.head);
         if (write_file(&packed, size, path, is_sector)) {
             report(path, tables, size);
             status = STATUS_DONE;
@@ -131,7 +132,7 @@ static bool skip_head(const struct text *text, const uint8_t **bytes, size_t *si
         return true;
     *bytes += STORE_HEAD_BYTES;
     *size -= STORE_HEAD_BYTES;
-    store_make_head(*bytes, (uint32_t)*size, FIRST_SEQUENCE, head);
+    takt_store_make_head(*bytes, (uint32_t)*size, FIRST_SEQUENCE, head);
     return memcmp(head, text->bytes, sizeof head) == 0;
 }
 
@@ -144,8 +145,8 @@ static enum command_status print_settings(const char *path, const uint8_t *bytes
     char text[DIAGNOSTIC_TEXT_MAX];
 
     machine_setup_set_default(&setup);
-    if (!settings_read(bytes, size, &setup.machine, &tables, dcf, &wrong)) {
-        (void)diagnostic_text(&wrong, text);
+    if (!takt_settings_read(bytes, size, &setup.machine, &tables, dcf, &wrong)) {
+        (void)takt_diagnostic_text(&wrong, text);
         message_error(path, 0, 0, "%s", text);
         return STATUS_INPUT;
     }

@@ -54,7 +54,7 @@ static void set_rotary(struct machine_setup *setup, unsigned axis)
 void machine_setup_set_default(struct machine_setup *setup)
 {
     *setup = (struct machine_setup){0};
-    machine_set_default(&setup->machine);
+    takt_machine_set_default(&setup->machine);
     virtual_spindle_set_default(&setup->spindle);
     setup->geometry.table_axis = AXIS_COUNT;
     setup->geometry.head_axis = AXIS_COUNT;
@@ -103,19 +103,19 @@ static const char *check_buses(const struct machine *machine)
     struct drives_load load = {0};
     unsigned bus = 0;
 
-    while (bus < machine_bus_count(machine) && machine_predict_load(machine, bus, &load))
+    while (bus < takt_machine_bus_count(machine) && takt_machine_predict_load(machine, bus, &load))
         bus++;
-    if (bus == machine_bus_count(machine))
+    if (bus == takt_machine_bus_count(machine))
         return NULL;
     bus_advice_write(machine, bus, advice);
     if (machine->can_data_bitrate > 0)
         (void)snprintf(rate, sizeof rate, " (data %u)", (unsigned)machine->can_data_bitrate);
-    if (machine_bus_count(machine) > 1)
+    if (takt_machine_bus_count(machine) > 1)
         (void)snprintf(name, sizeof name, " can%u", bus % 10);
     return problem("the bus%s cannot carry a cycle: %u drives take %u of %u bits at worst, load "
                    "%.1f %%, at %u "
                    "bit/s%s and %u us; %s",
-                   name, machine_bus_nodes(machine, bus, node), (unsigned)load.bits,
+                   name, takt_machine_bus_nodes(machine, bus, node), (unsigned)load.bits,
                    (unsigned)load.capacity_bits, load.percent, (unsigned)machine->can_bitrate, rate,
                    (unsigned)machine->cycle_us, advice);
 }
@@ -126,11 +126,11 @@ static const char *check_machine(const struct machine *machine)
     char text[DIAGNOSTIC_TEXT_MAX];
     struct diagnostic wrong;
 
-    if (machine_check(machine, &wrong))
+    if (takt_machine_check(machine, &wrong))
         return NULL;
     if (wrong.code == TAKT_ERROR_BUS_OVERLOAD)
         return check_buses(machine);
-    (void)diagnostic_text(&wrong, text);
+    (void)takt_diagnostic_text(&wrong, text);
     return problem("%s", text);
 }
 
@@ -241,7 +241,7 @@ const char *machine_setup_check(const struct machine_setup *setup)
         if (setup->machine.axis[i].present)
             wrong = check_drive(setup, i);
     }
-    for (unsigned i = 0; i < machine_gantry_count(&setup->machine) && wrong == NULL; i++)
+    for (unsigned i = 0; i < takt_machine_gantry_count(&setup->machine) && wrong == NULL; i++)
         wrong = check_drive(setup, MACHINE_SECOND_DRIVE + i);
     return wrong;
 }
@@ -255,7 +255,7 @@ double machine_setup_predict_load_percent(const struct machine *machine, unsigne
 {
     struct drives_load load;
 
-    (void)machine_predict_load(machine, bus, &load);
+    (void)takt_machine_predict_load(machine, bus, &load);
     return load.percent;
 }
 

@@ -82,7 +82,7 @@ const char *machine_setup_chain(const struct machine_setup *setup, struct unit_c
 /* The virtual spindle: its highest speed is the machine's. */
 struct virtual_spindle_config machine_setup_get_spindle(const struct machine_setup *setup);
 
-/* Of every bus. */
+/* Bit rates of every bus. */
 struct frame_rates machine_setup_get_rates(const struct machine *machine);
 
 /* Load of a bus with worst-case stuffing of a cycle's frames, percent. */

@@ -67,7 +67,7 @@ static bool find_drive(const struct machine_setup *setup, const char *instance, 
             return true;
         }
     }
-    for (unsigned i = 0; i < machine_gantry_count(&setup->machine) && *end == '\0'; i++) {
+    for (unsigned i = 0; i < takt_machine_gantry_count(&setup->machine) && *end == '\0'; i++) {
         if (end != instance && setup->machine.gantry[i].drive_node == node &&
             setup->machine.gantry[i].drive_bus == bus) {
             *index = MACHINE_SECOND_DRIVE + i;
@@ -275,7 +275,7 @@ static const char *const *words_of(const struct machine_key *key)
     static const char *const step_forms[] = {"even", "improved", "plain", NULL};
     static const char *const shapers[] = {"none", "neutral", "zv", "mzv", "ei", NULL};
     static const char *const interpolators[] = {"exact", "integrate", "rotate", NULL};
-    static const char *const laws[] = {"jerk", "smooth", "gentle", NULL};
+    static const char *const profiles[] = {"jerk", "smooth", "gentle", NULL};
     static const char *const landings[] = {"span", "block", "scale", NULL};
     static const char *const limiters[] = {"ceiling", "threshold", "smooth", NULL};
     static const char *const methods[] = {"adaptive", "proportional", NULL};
@@ -284,8 +284,8 @@ static const char *const *words_of(const struct machine_key *key)
         return drive_types;
     if (key->type == KEY_SHAPER)
         return shapers;
-    if (key->type == KEY_LAW)
-        return laws;
+    if (key->type == KEY_RAMP_PROFILE)
+        return profiles;
     if (key->type == KEY_LANDING)
         return landings;
     if (key->type == KEY_LIMITER)
@@ -397,10 +397,10 @@ static bool read_layers(const struct machine_key *key, const char *value, uint32
         size_t length = strcspn(value, " \t,");
         unsigned i = 0;
 
-        while (
-            i < CORRECTION_LAYERS_COUNT &&
-            (strlen(correction_layer_name((enum correction_layer_number)i)) != length ||
-             strncmp(correction_layer_name((enum correction_layer_number)i), value, length) != 0))
+        while (i < CORRECTION_LAYERS_COUNT &&
+               (strlen(takt_correction_layer_name((enum correction_layer_number)i)) != length ||
+                strncmp(takt_correction_layer_name((enum correction_layer_number)i), value,
+                        length) != 0))
             i++;
         if (i == CORRECTION_LAYERS_COUNT) {
             say(wrong, "%s: there is no layer '%.*s': matrix setup axes volume thermal wear",
@@ -438,7 +438,7 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     case KEY_DRIVE_TYPE:
     case KEY_STEP_FORM:
     case KEY_SHAPER:
-    case KEY_LAW:
+    case KEY_RAMP_PROFILE:
     case KEY_LANDING:
     case KEY_LIMITER:
     case KEY_OVERRIDE_METHOD:
@@ -518,7 +518,7 @@ static void write_layers(uint32_t layers, char *text, size_t size)
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT && used < size; i++) {
         if ((layers & 1U << i) != 0)
             used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? " " : "",
-                                     correction_layer_name((enum correction_layer_number)i));
+                                     takt_correction_layer_name((enum correction_layer_number)i));
     }
 }
 
@@ -542,7 +542,7 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
     case KEY_DRIVE_TYPE:
     case KEY_STEP_FORM:
     case KEY_SHAPER:
-    case KEY_LAW:
+    case KEY_RAMP_PROFILE:
     case KEY_LANDING:
     case KEY_LIMITER:
     case KEY_OVERRIDE_METHOD:

@@ -23,7 +23,7 @@ static const char *set_parameter(struct parameter_file *file, const char *line)
     if (file->listed[number])
         return "this parameter is given twice";
     file->listed[number] = true;
-    return parameters_set(&file->values, (unsigned)number, value)
+    return takt_parameters_set(&file->values, (unsigned)number, value)
                ? NULL
                : "too many parameters that are not 0";
 }
@@ -51,7 +51,7 @@ bool parameter_file_read(struct parameter_file *file, const char *path)
     unsigned errors = 0;
 
     *file = (struct parameter_file){0};
-    parameters_clear(&file->values);
+    takt_parameters_clear(&file->values);
     if (!text_read(&text, path))
         return false;
     while (text_next_line(&text, &position, &line, &length)) {
@@ -74,7 +74,7 @@ static bool is_kept(const struct parameter_file *file, unsigned number)
     if (file->listed[number])
         return true;
     return number >= PARAMETER_REFERENCE_1 && !computed &&
-           parameters_get(&file->values, number) != 0;
+           takt_parameters_get(&file->values, number) != 0;
 }
 
 /* With as few digits as give the same bits when read. */
@@ -94,6 +94,6 @@ void parameter_file_write(FILE *stream, const struct parameter_file *file)
 {
     for (unsigned number = 1; number <= PARAMETER_NUMBER_MAX; number++) {
         if (is_kept(file, number))
-            write_value(stream, number, parameters_get(&file->values, number));
+            write_value(stream, number, takt_parameters_get(&file->values, number));
     }
 }

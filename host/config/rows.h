@@ -22,7 +22,7 @@ struct rows {
 bool rows_open(struct rows *rows, const char *path);
 void rows_close(struct rows *rows);
 
-/* So many lines are there at most. */
+/* Number of lines, at most. */
 size_t rows_count_lines(const struct rows *rows);
 
 /* Goes to the next row. False: there is none. */

@@ -15,10 +15,10 @@ static struct shape_mode mode_of(const double number[VIBRATION_NUMBERS])
 static struct shape_config config_of(const struct machine_setup *setup)
 {
     static void (*const trains[])(const struct shape_mode *, double,
-                                  struct train *) = {[SHAPER_NEUTRAL] = zv_train,
-                                                     [SHAPER_ZV] = zv_train,
-                                                     [SHAPER_MZV] = shapers_mzv,
-                                                     [SHAPER_EI] = shapers_ei};
+                                  struct train *) = {[SHAPER_NEUTRAL] = takt_zv_train,
+                                                     [SHAPER_ZV] = takt_zv_train,
+                                                     [SHAPER_MZV] = takt_shapers_mzv,
+                                                     [SHAPER_EI] = takt_shapers_ei};
     struct shape_config config = {.train = trains[setup->shaper],
                                   .keeps_way = setup->shaper == SHAPER_NEUTRAL,
                                   .cycle_s = 1e-6 * (double)setup->machine.cycle_us};
@@ -52,7 +52,7 @@ const char *shaper_check(const struct machine_setup *setup)
 
     if (!has_mode(&config))
         return "no axis has a mode (geometry.mode_x)";
-    return shape_init(&tried, &config);
+    return takt_shape_init(&tried, &config);
 }
 
 struct shape *shaper_prepare(const struct machine_setup *setup, struct shape *s)
@@ -61,7 +61,7 @@ struct shape *shaper_prepare(const struct machine_setup *setup, struct shape *s)
         return NULL;
     const struct shape_config config = config_of(setup);
 
-    return shape_init(s, &config) == NULL ? s : NULL;
+    return takt_shape_init(s, &config) == NULL ? s : NULL;
 }
 
 void shaper_planned_modes(const struct machine_setup *setup, struct vibration_config *modes)
@@ -79,7 +79,7 @@ void shaper_plan_limits(const struct machine_setup *setup, struct plan_limits *l
     static _Thread_local struct shape memory;
     const struct shape *s = shaper_prepare(setup, &memory);
 
-    controller_plan_limits(&setup->machine, limits);
+    takt_controller_plan_limits(&setup->machine, limits);
     if (s != NULL)
-        shape_leave(s, limits);
+        takt_shape_leave(s, limits);
 }

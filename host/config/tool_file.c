@@ -23,7 +23,7 @@ struct tool_reader {
 
 static bool is_known(const struct tool_reader *r, uint32_t number)
 {
-    return tool_table_find(&r->file->table, number) != NULL;
+    return takt_tool_table_find(&r->file->table, number) != NULL;
 }
 
 static void tool_error(struct tool_reader *r, size_t offset, const char *what)

@@ -340,8 +340,8 @@ static void note_references(struct offline_rewriter *r, const struct parameters 
     static const unsigned first[] = {PARAMETER_REFERENCE_1, PARAMETER_REFERENCE_2};
 
     for (unsigned i = 0; i < 2 * AXIS_COUNT; i++)
-        r->reference_mm[i / AXIS_COUNT][i % AXIS_COUNT] = coordinates_from_parameter(
-            parameters_get(parameters, first[i / AXIS_COUNT] + i % AXIS_COUNT),
+        r->reference_mm[i / AXIS_COUNT][i % AXIS_COUNT] = takt_coordinates_from_parameter(
+            takt_parameters_get(parameters, first[i / AXIS_COUNT] + i % AXIS_COUNT),
             (enum axis)(i % AXIS_COUNT));
 }
 
@@ -360,16 +360,16 @@ static void open_program(struct offline *o)
     struct offline_rewriter *r = &o->rewriter;
 
     o->parameters = o->config->session->parameters.values;
-    controller_program_config(&controller, &config);
+    takt_controller_program_config(&controller, &config);
     config.waits = false;
-    program_open(&o->program, &config, &source);
+    takt_program_open(&o->program, &config, &source);
     note_references(r, &o->parameters);
     r->tolerance_mm = o->config->tolerance_mm;
     r->axes = config.axes;
     r->at = r->written = config.start;
-    correction_init(&r->correction, &o->config->session->setup.machine.correction, config.axes,
-                    1e-6 * (double)o->config->session->setup.machine.cycle_us,
-                    o->config->session->correction, &config.start);
+    takt_correction_init(&r->correction, &o->config->session->setup.machine.correction, config.axes,
+                         1e-6 * (double)o->config->session->setup.machine.cycle_us,
+                         o->config->session->correction, &config.start);
 }
 
 static enum command_status fail(const struct offline *o)
@@ -381,11 +381,11 @@ static enum command_status fail(const struct offline *o)
     return o->rewriter.wrong_line > 0 ? STATUS_INPUT : STATUS_ENVIRONMENT;
 }
 
-static void report_error(const struct offline *o, const struct diagnostic *error)
+static void takt_report_error(const struct offline *o, const struct diagnostic *error)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    (void)diagnostic_text(error, text);
+    (void)takt_diagnostic_text(error, text);
     message_error(o->config->name, error->line, error->column, "%s", text);
 }
 
@@ -395,10 +395,10 @@ static enum command_status read_program(struct offline *o)
     struct move move;
 
     for (;;) {
-        const enum program_result result = program_next(&o->program, &move, &error);
+        const enum program_result result = takt_program_next(&o->program, &move, &error);
 
         if (result == PROGRAM_ERROR) {
-            report_error(o, &error);
+            takt_report_error(o, &error);
             return STATUS_INPUT;
         }
         if (result == PROGRAM_END || move.kind == MOVE_END)

@@ -16,8 +16,8 @@ static void cut(struct offline_cuts *cuts, const struct offline_line *line,
                 const struct program_span *span)
 {
     const struct program_lexer *lexer = &line->context.lexer;
-    const size_t from = lexer_column(lexer, span->begin) - 1U;
-    const size_t to = lexer_column(lexer, span->end - 1U);
+    const size_t from = takt_lexer_column(lexer, span->begin) - 1U;
+    const size_t to = takt_lexer_column(lexer, span->end - 1U);
     unsigned nested = 0;
 
     for (size_t i = from; i < to && i < line->raw_length; i++) {
@@ -50,7 +50,7 @@ static size_t end_of_words(const struct offline_line *line)
 {
     const struct program_lexer *lexer = &line->context.lexer;
 
-    return lexer->length > 0 ? lexer_column(lexer, lexer->length - 1U) : 0;
+    return lexer->length > 0 ? takt_lexer_column(lexer, lexer->length - 1U) : 0;
 }
 
 /* Spaces that stood between words do not stay behind them. */

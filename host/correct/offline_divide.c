@@ -15,7 +15,7 @@
 /* Words have six decimals: what is written is this far from what was meant, at most, in each axis. */
 #define WRITTEN_STEPS_PER_MM 1e6
 
-/* So many of them are no change of a length. */
+/* Up to this many of them are no change of a length. */
 #define WRITTEN_STEPS 4.0
 
 /* Arcs and involutes of more than a third of a turn are never written. */
@@ -28,8 +28,8 @@
 #define INVOLUTE_CLOSED_MM 4e-6
 
 /*
- * A piece is compared with the corrected path at so many places, less one. Between them it may be a little farther off: of
- * a parabola nothing, of a cubic of the same three points 0.4 % of the largest distance.
+ * A piece is compared with the corrected path at this many places, less one. Between them it may be a little farther
+ * off: of a parabola nothing, of a cubic of the same three points 0.4 % of the largest distance.
  */
 #define SAMPLES      8
 #define BETWEEN_PART 0.98
@@ -42,7 +42,7 @@ static bool is_curved(const struct move *move)
 /* As it will be read: rounded to what is written. Rotary axes are written in degrees, finely enough. */
 static double round_to_written(double mm)
 {
-    return maths_round(mm * WRITTEN_STEPS_PER_MM) / WRITTEN_STEPS_PER_MM;
+    return takt_maths_round(mm * WRITTEN_STEPS_PER_MM) / WRITTEN_STEPS_PER_MM;
 }
 
 static void corrected(struct offline_rewriter *r, const struct move *move, const struct point *at,
@@ -51,7 +51,7 @@ static void corrected(struct offline_rewriter *r, const struct move *move, const
     struct point k;
     double size = 0;
 
-    correction_evaluate(&r->correction, at, move, &k);
+    takt_correction_evaluate(&r->correction, at, move, &k);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         to->at[i] = at->at[i] + k.at[i];
         size += i < AXIS_LINEAR_COUNT ? k.at[i] * k.at[i] : 0;
@@ -73,15 +73,15 @@ static double place_of(const struct curve *c, double part)
 {
     if (c->kind != CURVE_INVOLUTE)
         return part * c->length_mm;
-    const double from = involute_unrolled(c, 0.0);
-    const double to = involute_unrolled(c, c->length_mm);
+    const double from = takt_involute_unrolled(c, 0.0);
+    const double to = takt_involute_unrolled(c, c->length_mm);
 
-    return maths_clamp(involute_place(c, from + part * (to - from)), 0.0, c->length_mm);
+    return maths_clamp(takt_involute_place(c, from + part * (to - from)), 0.0, c->length_mm);
 }
 
 static void point_of(const struct curve *c, double part, struct point *at)
 {
-    curve_point(c, place_of(c, part), at);
+    takt_curve_point(c, place_of(c, part), at);
 }
 
 /*
@@ -94,7 +94,7 @@ static void circle_through(const struct point *a, const struct point *m, const s
 {
     enum axis first, second;
 
-    plane_axes(plane, &first, &second);
+    takt_plane_axes(plane, &first, &second);
     const double mu = m->at[first] - a->at[first], mv = m->at[second] - a->at[second];
     const double bu = b->at[first] - a->at[first], bv = b->at[second] - a->at[second];
     const double mm = 0.5 * (mu * mu + mv * mv), bb = 0.5 * (bu * bu + bv * bv);
@@ -200,13 +200,13 @@ static bool curve_of(const struct move *move, const struct point *from,
     struct move written = *move;
 
     if (piece->straight || !is_curved(move))
-        return curve_set_line(c, from, &piece->end);
+        return takt_curve_set_line(c, from, &piece->end);
     written.end = piece->end;
     written.turns = 1;
     written.centre_mm[0] = piece->centre_mm[0];
     written.centre_mm[1] = piece->centre_mm[1];
     written.base_radius_mm = piece->base_radius_mm;
-    return has_centre(piece) && move_curve(&written, from, c);
+    return has_centre(piece) && takt_move_curve(&written, from, c);
 }
 
 /* Largest distance of a piece from the corrected path, compared at equal parts of both: no less than the true one. */
@@ -284,8 +284,8 @@ static unsigned least_pieces(const struct curve *c)
     if (c->kind == CURVE_ARC)
         sweep_rad = c->arc.sweep_rad;
     else if (c->kind == CURVE_INVOLUTE)
-        sweep_rad = involute_unrolled(c, c->length_mm) - involute_unrolled(c, 0.0);
-    return (unsigned)maths_max(1.0, maths_ceil(maths_abs(sweep_rad) / SWEEP_MAX_RAD));
+        sweep_rad = takt_involute_unrolled(c, c->length_mm) - takt_involute_unrolled(c, 0.0);
+    return (unsigned)maths_max(1.0, takt_maths_ceil(maths_abs(sweep_rad) / SWEEP_MAX_RAD));
 }
 
 static double radius_at(const struct point *at, const struct move *move,
@@ -293,7 +293,7 @@ static double radius_at(const struct point *at, const struct move *move,
 {
     enum axis first, second;
 
-    plane_axes(move->plane, &first, &second);
+    takt_plane_axes(move->plane, &first, &second);
     const double u = at->at[first] - piece->centre_mm[0];
     const double v = at->at[second] - piece->centre_mm[1];
 
@@ -343,7 +343,7 @@ unsigned offline_divide(struct offline_rewriter *r, const struct move *move,
     unsigned n;
 
     r->totals.motions++;
-    if (!move_curve(move, &r->at, &c))
+    if (!takt_move_curve(move, &r->at, &c))
         return set_end(r, move, &pieces[0]);
     if (is_thread(move))
         return keep_whole(r, move, &c, &pieces[0]);

@@ -187,8 +187,8 @@ static bool is_reference_known(const struct offline_rewriter *r, const struct of
 
     *reference_mm = r->reference_mm[first == PARAMETER_REFERENCE_1 ? 0 : 1];
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (coordinates_from_parameter(parameters_get(p->config.parameters, first + i),
-                                       (enum axis)i) != (*reference_mm)[i])
+        if (takt_coordinates_from_parameter(takt_parameters_get(p->config.parameters, first + i),
+                                            (enum axis)i) != (*reference_mm)[i])
             return false;
     }
     return true;
@@ -216,7 +216,7 @@ static bool rewrite_reference(struct offline_rewriter *r, const struct offline_l
     }
     offline_print_kept(line, &cuts, words.bytes != NULL ? words.bytes : "", text);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (all || words_has(&line->context, coordinates_letter((enum axis)i)))
+        if (all || words_has(&line->context, takt_coordinates_letter((enum axis)i)))
             r->written.at[i] = (r->axes & 1U << i) != 0 ? reference_mm[i] : 0.0;
     }
     text->failed |= words.failed;
@@ -268,10 +268,10 @@ bool offline_is_setting(const struct program *p)
 
 void offline_set_up(struct offline_rewriter *r, const struct move *move)
 {
-    correction_tell_setup(&r->correction, move->channel, move->setup);
+    takt_correction_tell_setup(&r->correction, move->channel, move->setup);
     if (move->setup_ends) {
-        (void)correction_take_setup(&r->correction);
-        correction_settle_setup(&r->correction);
+        (void)takt_correction_take_setup(&r->correction);
+        takt_correction_settle_setup(&r->correction);
     }
 }
 

@@ -76,7 +76,7 @@ static void to_program(const struct offline_line *line, const struct point *mach
     if (words_has_step(&line->context, STEP_MACHINE))
         *value = *machine;
     else
-        coordinates_work_of(&line->context, machine, value);
+        takt_coordinates_work_of(&line->context, machine, value);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value->at[i] *=
             i < AXIS_LINEAR_COUNT ? 1.0 / line->context.modes.unit_mm : axis_unit_ratio(i);
@@ -98,7 +98,7 @@ static void to_machine(const struct offline_line *line, const struct point *valu
     if (words_has_step(&line->context, STEP_MACHINE))
         *machine = work;
     else
-        coordinates_machine_of(&line->context, &work, machine);
+        takt_coordinates_machine_of(&line->context, &work, machine);
 }
 
 /*
@@ -107,7 +107,7 @@ static void to_machine(const struct offline_line *line, const struct point *valu
 static bool is_written(const struct offline_rewriter *r, const struct offline_line *line,
                        const struct offline_piece *piece, unsigned axis)
 {
-    const bool given = words_has(&line->context, coordinates_letter((enum axis)axis));
+    const bool given = words_has(&line->context, takt_coordinates_letter((enum axis)axis));
 
     if ((r->axes & 1U << axis) == 0)
         return false;
@@ -124,7 +124,7 @@ static void print_centre(const struct offline_line *line, const struct offline_r
     enum axis axis[2] = {none, none};
     struct point centre = r->written, from, to;
 
-    plane_axes(move->plane, &axis[0], &axis[1]);
+    takt_plane_axes(move->plane, &axis[0], &axis[1]);
     for (unsigned i = 0; i < 2; i++)
         centre.at[axis[i]] = piece->centre_mm[i];
     to_program(line, &r->written, &from);
@@ -184,7 +184,7 @@ void offline_print_setting(const struct offline_rewriter *r, const struct offlin
     to_program(line, &r->at, &programmed);
     to_program(line, &r->written, &written);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const char letter = coordinates_letter((enum axis)i);
+        const char letter = takt_coordinates_letter((enum axis)i);
 
         if (words_has(&line->context, letter))
             (void)print_word(text, AXIS_LETTERS[i],

@@ -63,7 +63,7 @@ static double rise_at(const struct deviation_config *config, double time_s)
 {
     if (config->warming_time_s <= 0)
         return config->warming_k;
-    return config->warming_k * (1.0 - maths_exp(-time_s / config->warming_time_s));
+    return config->warming_k * (1.0 - takt_maths_exp(-time_s / config->warming_time_s));
 }
 
 void deviation_follow(struct deviation *d, const struct point *drives, double time_s)
@@ -85,7 +85,7 @@ double deviation_sensor_k(const struct deviation *d)
 {
     const double step = d->config.sensor_step_k;
 
-    return step > 0 ? step * maths_round(d->rise_k / step) : d->rise_k;
+    return step > 0 ? step * takt_maths_round(d->rise_k / step) : d->rise_k;
 }
 
 /* v = R v, R the product of small rotations about X, Y, Z, to the first order: R v = v + r x v. */
@@ -189,7 +189,7 @@ static void turn_about(unsigned axis, const double centre[N], double angle, doub
     const double u = v[first] - centre[first], w = v[second] - centre[second];
     double sine, cosine;
 
-    maths_sincos(angle, &sine, &cosine);
+    takt_maths_sincos(angle, &sine, &cosine);
     v[first] = centre[first] + cosine * u - sine * w;
     v[second] = centre[second] + sine * u + cosine * w;
 }

@@ -13,8 +13,8 @@ static double evaluate(const double n[DEVIATION_CURVE_NUMBERS], double x_mm, dou
     double e = n[DEVIATION_LINEAR_PER_M] * x_mm / MM_PER_M + n[DEVIATION_BOW] * s * s;
 
     if (n[DEVIATION_WAVELENGTH_MM] > 0.0) {
-        e += n[DEVIATION_SINE] * maths_sin(MATHS_TWO_PI * x_mm / n[DEVIATION_WAVELENGTH_MM] +
-                                           n[DEVIATION_PHASE_DEG] * DEGREE);
+        e += n[DEVIATION_SINE] * takt_maths_sin(MATHS_TWO_PI * x_mm / n[DEVIATION_WAVELENGTH_MM] +
+                                                n[DEVIATION_PHASE_DEG] * DEGREE);
     }
     return e;
 }

@@ -88,7 +88,7 @@ static size_t skip_value(const struct line *l, size_t at)
 
     if (letters > at && l->text[skip_spaces(l, letters)] == '[')
         return skip_nested(l, skip_spaces(l, letters), '[', ']');
-    const size_t digits = decimal_read(&l->text[at], l->length - at, &ignored);
+    const size_t digits = takt_decimal_read(&l->text[at], l->length - at, &ignored);
 
     return digits > 0 ? at + digits : begin;
 }
@@ -100,7 +100,7 @@ static void set_number(struct line *l, struct line_word *w)
 
     for (; l->text[at] == '-' || l->text[at] == '+' || is_space(l->text[at]); at++)
         sign = l->text[at] == '-' ? -sign : sign;
-    const size_t digits = decimal_read(&l->text[at], w->end - at, &w->value);
+    const size_t digits = takt_decimal_read(&l->text[at], w->end - at, &w->value);
 
     w->is_number = digits > 0 && at + digits == w->end;
     w->value *= sign;

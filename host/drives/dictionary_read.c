@@ -266,19 +266,19 @@ static void take_number(struct object_row *row, struct text_part part, int64_t *
     int64_t value;
     if (!words_read_number(part, &value, &has_node))
         return;
-    *number = object_type_value((enum object_type)row->type, (uint32_t)value);
+    *number = takt_object_type_value((enum object_type)row->type, (uint32_t)value);
 }
 
 static int64_t least_of(uint8_t type)
 {
-    unsigned bits = 8 * object_type_bytes((enum object_type)type);
+    unsigned bits = 8 * takt_object_type_bytes((enum object_type)type);
     bool is_signed = type <= OBJECT_INTEGER32;
     return is_signed ? -(INT64_C(1) << (bits - 1)) : 0;
 }
 
 static int64_t most_of(uint8_t type)
 {
-    unsigned bits = 8 * object_type_bytes((enum object_type)type);
+    unsigned bits = 8 * takt_object_type_bytes((enum object_type)type);
     bool is_signed = type <= OBJECT_INTEGER32;
     return (INT64_C(1) << (is_signed ? bits - 1 : bits)) - 1;
 }
@@ -302,7 +302,7 @@ static bool take_default(struct object_row *row, struct text_part part)
     int64_t value;
     if (!words_read_number(part, &value, &has_node))
         return false;
-    row->initial = object_type_value((enum object_type)row->type, (uint32_t)value);
+    row->initial = takt_object_type_value((enum object_type)row->type, (uint32_t)value);
     row->flags = (uint8_t)((row->flags & ~OBJECT_NODE_ID) | (has_node ? OBJECT_NODE_ID : 0));
     return true;
 }
@@ -341,9 +341,9 @@ static bool is_of_motor(uint16_t index)
 static void take_own(struct builder *b, struct object_row *row)
 {
     bool has_index;
-    const struct object_row *own = object_table_find(row->index, row->sub, &has_index);
-    unsigned bytes = object_type_bytes((enum object_type)row->type);
-    if (own != NULL && bytes != 0 && bytes == object_type_bytes((enum object_type)own->type)) {
+    const struct object_row *own = takt_object_table_find(row->index, row->sub, &has_index);
+    unsigned bytes = takt_object_type_bytes((enum object_type)row->type);
+    if (own != NULL && bytes != 0 && bytes == takt_object_type_bytes((enum object_type)own->type)) {
         const uint8_t kept = OBJECT_EVENT | OBJECT_FIXED | OBJECT_BY_MACHINE | OBJECT_NODE_ID;
         row->field = own->field;
         row->initial = own->initial;
@@ -372,7 +372,7 @@ static bool add_row(struct builder *b, const struct section *section, uint8_t su
     row.flags = mapping_of(section);
     row.name = keep(b, section->key[KEY_NAME]);
     take_own(b, &row);
-    if (object_type_bytes((enum object_type)row.type) == 0) {
+    if (takt_object_type_bytes((enum object_type)row.type) == 0) {
         row.title = keep(b, value);
     } else {
         take_limits(&row, section);
@@ -473,8 +473,8 @@ static void allow_mapped(struct builder *b)
         if (entry->sub == 0 || !(is_received || is_sent))
             continue;
         const struct object_row *mapped =
-            dictionary_find(&built, (uint16_t)((uint64_t)entry->initial >> 16),
-                            (uint8_t)((uint64_t)entry->initial >> 8), &has_index);
+            takt_dictionary_find(&built, (uint16_t)((uint64_t)entry->initial >> 16),
+                                 (uint8_t)((uint64_t)entry->initial >> 8), &has_index);
         if (mapped != NULL && is_received && mapped->access != OBJECT_RO)
             b->row[mapped - b->row].flags |= OBJECT_TO_RPDO;
         else if (mapped != NULL && is_sent)
@@ -499,9 +499,9 @@ static bool build(struct builder *b, struct dictionary_problem *wrong)
     limit_mappings(b);
     allow_mapped(b);
     const struct dictionary built = {.row = b->row, .count = b->count};
-    if (dictionary_find(&built, 0x1000, 0, &has_index) == NULL)
+    if (takt_dictionary_find(&built, 0x1000, 0, &has_index) == NULL)
         return fail(wrong, "this is no electronic data sheet: it has no section [1000]");
-    if (dictionary_find(&built, 0x6040, 0, &has_index) == NULL)
+    if (takt_dictionary_find(&built, 0x6040, 0, &has_index) == NULL)
         return fail(wrong, "this is no drive: it has no controlword, section [6040]");
     if (b->extra > DRIVE_EXTRA_SIZE)
         return fail(wrong, "it has more objects than a virtual drive has memory for");

@@ -24,7 +24,7 @@ struct dictionary_problem {
  */
 bool dictionary_read(struct dictionary *dictionary, const char *text, size_t length,
                      struct dictionary_problem *wrong);
-/* Of dictionary_read. */
+/* Frees what dictionary_read has made. */
 void dictionary_free(struct dictionary *dictionary);
 
 #endif

@@ -47,7 +47,7 @@ static void write_emcy(FILE *stream, const struct drive_event *event)
                       (unsigned)event->second);
     else
         (void)fprintf(stream, "EMCY %04X: %s, register %02X\n", (unsigned)event->first,
-                      emcy_text((uint16_t)event->first), (unsigned)event->second);
+                      takt_emcy_text((uint16_t)event->first), (unsigned)event->second);
 }
 
 static void write_homing(FILE *stream, const struct drive_event *event)
@@ -79,8 +79,8 @@ static void write_what(FILE *stream, const struct drive_event *event)
         (void)fprintf(stream, "NMT %s\n", nmt_name(event->first));
         break;
     case DRIVE_EVENT_STATE:
-        (void)fprintf(stream, "%s -> %s\n", cia402_state_text((enum cia402_state)event->first),
-                      cia402_state_text((enum cia402_state)event->second));
+        (void)fprintf(stream, "%s -> %s\n", takt_cia402_state_text((enum cia402_state)event->first),
+                      takt_cia402_state_text((enum cia402_state)event->second));
         break;
     case DRIVE_EVENT_MODE:
         (void)fprintf(stream, "mode %s\n", mode_name(event->first));

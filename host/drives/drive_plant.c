@@ -232,7 +232,7 @@ static void hit_stop(struct drive_plant *plant)
     plant->velocity_mm_s = 0;
 }
 
-/* What the loops asked for so many steps ago. */
+/* What the loops asked for torque_delay_steps ago. */
 static double delayed(struct drive_plant *plant, double asked_mm_s2)
 {
     const uint32_t now = plant->asked++;
@@ -323,7 +323,7 @@ static void latch_pulse(struct drive_plant *plant)
     double turn_mm = plant->config.travel_per_revolution_mm;
     double from = plant->sensed_mm / turn_mm;
     double to = plant->position_mm / turn_mm;
-    double turns = to > from ? maths_floor(to) : maths_ceil(to);
+    double turns = to > from ? takt_maths_floor(to) : takt_maths_ceil(to);
     if (to == from || (to > from ? turns <= from : turns >= from))
         return;
     plant->sense.pulses++;
@@ -357,7 +357,7 @@ double drive_plant_table_mm(const struct drive_plant *plant)
     double table_mm = plant->position_mm - plant->play_mm;
     if (c->pitch_error_mm > 0)
         table_mm += c->pitch_error_mm *
-                    maths_sin(MATHS_TWO_PI * plant->position_mm / c->pitch_error_period_mm);
+                    takt_maths_sin(MATHS_TWO_PI * plant->position_mm / c->pitch_error_period_mm);
     return table_mm;
 }
 

@@ -25,7 +25,7 @@ static char *text_of(const struct object_row *row, struct drive_objects *objects
 
 static void write_number(FILE *stream, const struct object_row *row, uint32_t value)
 {
-    unsigned bytes = object_type_bytes((enum object_type)row->type);
+    unsigned bytes = takt_object_type_bytes((enum object_type)row->type);
     (void)fprintf(stream, "%04X:%02X %0*X\n", row->index, row->sub, (int)(2 * bytes),
                   (unsigned)value);
 }
@@ -45,8 +45,8 @@ static void write_row(FILE *stream, const struct object_row *row,
         const char *text = (const char *)stored + row->field;
         if (strcmp(text, (const char *)initial + row->field) != 0)
             write_text(stream, row, text);
-    } else if (object_read(row, stored) != object_read(row, initial)) {
-        write_number(stream, row, object_read(row, stored));
+    } else if (takt_object_read(row, stored) != takt_object_read(row, initial)) {
+        write_number(stream, row, takt_object_read(row, stored));
     }
 }
 
@@ -59,7 +59,7 @@ void drive_store_write(FILE *stream, const struct servo *drive)
     if (drive->lss.stored != born)
         (void)fprintf(stream, NODE "%u\n", (unsigned)drive->lss.stored);
     for (unsigned i = 0; i < dictionary->count; i++)
-        if (servo_is_stored(&dictionary->row[i]))
+        if (takt_servo_is_stored(&dictionary->row[i]))
             write_row(stream, &dictionary->row[i], &drive->stored, &drive->initial);
 }
 
@@ -95,17 +95,17 @@ static bool read_place(struct text_part *part, unsigned *index, unsigned *sub)
 static bool take_number(const struct object_row *row, struct drive_objects *stored,
                         struct text_part part, struct drive_store_problem *wrong)
 {
-    const unsigned bytes = object_type_bytes((enum object_type)row->type);
+    const unsigned bytes = takt_object_type_bytes((enum object_type)row->type);
     unsigned raw;
     size_t digits = words_read_hex(part, 8, &raw);
-    int64_t value = object_type_value((enum object_type)row->type, raw);
+    int64_t value = takt_object_type_value((enum object_type)row->type, raw);
     if (digits == 0 || digits != part.length || digits > (size_t)2 * bytes)
         return refuse(wrong, "%04X:%02X is a number of %u bytes, in hexadecimal", row->index,
                       row->sub, bytes);
     if (row->flags & OBJECT_LIMITED && (value < row->min || value > row->max))
         return refuse(wrong, "%04X:%02X is %lld ... %lld", row->index, row->sub,
                       (long long)row->min, (long long)row->max);
-    object_write(row, stored, raw);
+    takt_object_write(row, stored, raw);
     return true;
 }
 
@@ -138,7 +138,7 @@ static bool take_node(struct servo *drive, struct text_part part, struct drive_s
     if (part.length > 3 || node == 0 || (node > NODE_MAX && node != LSS_NO_NODE))
         return refuse(wrong, "a node id is 1 ... %d, or %d: none", NODE_MAX, LSS_NO_NODE);
     drive->lss.stored = (uint8_t)node;
-    servo_apply_lss(drive, true);
+    takt_servo_apply_lss(drive, true);
     return true;
 }
 
@@ -153,8 +153,8 @@ static bool take_line(struct servo *drive, struct text_part part, struct drive_s
     if (!read_place(&part, &index, &sub))
         return refuse(wrong, "an object is expected, as 1017:00");
     const struct object_row *row =
-        dictionary_find(drive->dictionary, (uint16_t)index, (uint8_t)sub, &has_index);
-    if (row == NULL || !servo_is_stored(row))
+        takt_dictionary_find(drive->dictionary, (uint16_t)index, (uint8_t)sub, &has_index);
+    if (row == NULL || !takt_servo_is_stored(row))
         return refuse(wrong, "node %u has no object %04X:%02X that can be stored",
                       (unsigned)drive->config.node, index, sub);
     return is_text(row) ? take_text(row, &drive->stored, part, wrong)
@@ -172,7 +172,7 @@ bool drive_store_read(struct servo *drive, const char *text, size_t length,
             return false;
         at = next + 1;
     }
-    servo_restore(drive, UINT16_MAX);
-    servo_update_pdos(drive);
+    takt_servo_restore(drive, UINT16_MAX);
+    takt_servo_update_pdos(drive);
     return true;
 }

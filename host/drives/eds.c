@@ -33,7 +33,7 @@ static void write_file_info(FILE *stream, const char *name)
 static uint32_t constant_of(const struct dictionary *dictionary, uint16_t index, uint8_t sub)
 {
     bool has_index;
-    const struct object_row *row = dictionary_find(dictionary, index, sub, &has_index);
+    const struct object_row *row = takt_dictionary_find(dictionary, index, sub, &has_index);
     return row != NULL ? (uint32_t)row->initial : 0;
 }
 
@@ -141,15 +141,15 @@ static void write_default(FILE *stream, const struct object_row *row,
     bool is_measured = row->flags & OBJECT_TO_TPDO;
     if (row->type == OBJECT_STRING && row->flags & OBJECT_FIXED)
         write_pair(stream, "DefaultValue", "%s", row->title);
-    if (object_type_bytes((enum object_type)row->type) == 0 || is_measured ||
+    if (takt_object_type_bytes((enum object_type)row->type) == 0 || is_measured ||
         row->access == OBJECT_WO)
         return;
-    uint32_t raw = object_read(row, objects);
+    uint32_t raw = takt_object_read(row, objects);
     if (row->flags & OBJECT_NODE_ID)
         write_pair(stream, "DefaultValue", "$NODEID+0x%X", (unsigned)(raw - node));
     else
         write_number(stream, row, "DefaultValue",
-                     object_type_value((enum object_type)row->type, raw));
+                     takt_object_type_value((enum object_type)row->type, raw));
 }
 
 static void write_limits(FILE *stream, const struct object_row *row)

@@ -51,18 +51,18 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     drive_plant_init(&drive->plant, &config->plant, config->increments_per_mm < 0);
     if (drive->twin != NULL)
         drive->twin->open(drive->twin->context, &drive->servo, &servo, target, &bus, &motor);
-    servo_init(&drive->servo, &servo, target, &bus, &motor);
+    takt_servo_init(&drive->servo, &servo, target, &bus, &motor);
 }
 
 void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer)
 {
-    servo_observe(&drive->servo, observer);
+    takt_servo_observe(&drive->servo, observer);
 }
 
 void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length)
 {
     const struct virtual_drive_twin *twin = drive->twin;
-    servo_set_eds(&drive->servo, eds, length);
+    takt_servo_set_eds(&drive->servo, eds, length);
     if (twin == NULL)
         return;
     assert(length <=
@@ -74,14 +74,14 @@ void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t 
 void virtual_drive_boot(struct virtual_drive *drive)
 {
     virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_BOOT});
-    servo_boot(&drive->servo);
+    takt_servo_boot(&drive->servo);
     virtual_drive_end(drive);
 }
 
 /* What the drive does not listen to its twin need not be told. */
 static bool is_heard(const struct virtual_drive *drive, const struct can_frame *frame)
 {
-    return !drive->faults.is_hung && servo_accepts(&drive->servo, frame);
+    return !drive->faults.is_hung && takt_servo_accepts(&drive->servo, frame);
 }
 
 void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
@@ -92,7 +92,7 @@ void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_fra
     struct twin_order order = {.kind = TWIN_FRAME, .time_ns = time_ns};
     classical_frame_set(&order.frame, frame);
     virtual_drive_begin(drive, &order);
-    servo_on_frame_at(&drive->servo, frame, time_ns);
+    takt_servo_on_frame_at(&drive->servo, frame, time_ns);
     virtual_drive_end(drive);
 }
 
@@ -106,7 +106,7 @@ void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
     if (drive->faults.script)
         virtual_drive_run_faults(drive);
     virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_STEP, .a = cycle_ns});
-    servo_step(&drive->servo, cycle_ns);
+    takt_servo_step(&drive->servo, cycle_ns);
     virtual_drive_end(drive);
 }
 
@@ -114,7 +114,7 @@ void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio
 {
     virtual_drive_begin(drive,
                         &(struct twin_order){.kind = TWIN_TOUCH, .a = touches, .ratio = ratio});
-    servo_touch(&drive->servo, touches, ratio);
+    takt_servo_touch(&drive->servo, touches, ratio);
     virtual_drive_end(drive);
 }
 
@@ -127,29 +127,29 @@ void virtual_drive_inject(struct virtual_drive *drive, const struct inject *scri
     virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_MEDDLE});
     if (drive->twin != NULL)
         meddler = drive->twin->meddle(drive->twin->context, &meddler);
-    servo_meddle(&drive->servo, &meddler);
+    takt_servo_meddle(&drive->servo, &meddler);
     virtual_drive_end(drive);
 }
 
 enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive)
 {
-    return servo_get_state(&drive->servo);
+    return takt_servo_get_state(&drive->servo);
 }
 
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive)
 {
-    return servo_get_nmt_state(&drive->servo);
+    return takt_servo_get_nmt_state(&drive->servo);
 }
 
 bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uint32_t *value)
 {
-    return servo_read_object(&drive->servo, object, value);
+    return takt_servo_read_object(&drive->servo, object, value);
 }
 
 bool virtual_drive_write_object(struct virtual_drive *drive, uint32_t object, uint32_t value)
 {
     virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_WRITE, .a = object, .b = value});
-    bool good = servo_write_object(&drive->servo, object, value);
+    bool good = takt_servo_write_object(&drive->servo, object, value);
     virtual_drive_end(drive);
     return good;
 }

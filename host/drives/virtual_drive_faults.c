@@ -47,11 +47,11 @@ static uint32_t shown_by(struct virtual_drive *drive, const struct inject_fault 
 {
     bool has_index;
     const struct object_row *row =
-        dictionary_find(drive->servo.dictionary, fault->index, fault->sub, &has_index);
+        takt_dictionary_find(drive->servo.dictionary, fault->index, fault->sub, &has_index);
     if (fault->kind == INJECT_REPORT || !row)
         return fault->value;
-    servo_refresh(&drive->servo);
-    return object_read(row, &drive->servo.objects);
+    takt_servo_refresh(&drive->servo);
+    return takt_object_read(row, &drive->servo.objects);
 }
 
 static void look_at_motor(struct virtual_drive *drive)
@@ -59,7 +59,7 @@ static void look_at_motor(struct virtual_drive *drive)
     if (drive->servo.config.is_io)
         return;
     virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_LOOK});
-    servo_loop_look(&drive->servo.loop);
+    takt_servo_loop_look(&drive->servo.loop);
     virtual_drive_end(drive);
 }
 
@@ -93,16 +93,16 @@ static void tell_of_error(struct virtual_drive *drive, const struct inject_fault
                                      .b = register_of(fault)};
     virtual_drive_begin(drive, &order);
     if (fault->kind == INJECT_EMCY)
-        servo_fail(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
+        takt_servo_fail(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
     else
-        servo_send_emergency(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
+        takt_servo_send_emergency(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
     virtual_drive_end(drive);
 }
 
 static void reboot(struct virtual_drive *drive)
 {
     virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_REBOOT});
-    servo_reboot(&drive->servo);
+    takt_servo_reboot(&drive->servo);
     virtual_drive_end(drive);
 }
 
@@ -125,8 +125,8 @@ static void begin_or_end(struct virtual_drive *drive, unsigned i)
     const struct inject_fault *fault = fault_of(drive, i);
     f->in_force ^= UINT64_C(1) << i;
     bool begins = is_in_force(drive, i);
-    servo_tell(&drive->servo, begins ? DRIVE_EVENT_FAULT : DRIVE_EVENT_FAULT_END, fault->line,
-               (uint32_t)fault->kind);
+    takt_servo_tell(&drive->servo, begins ? DRIVE_EVENT_FAULT : DRIVE_EVENT_FAULT_END, fault->line,
+                    (uint32_t)fault->kind);
     if (begins && overrides(fault))
         f->shown[i] = shown_by(drive, fault);
     sum_up(drive);

@@ -47,7 +47,7 @@ static void set_target(struct pdo *target, const struct virtual_drives *set,
             place = count;
         node[count++] = config->drive[i].node;
     }
-    target_pdo_set(target, node, count, place, group);
+    takt_target_pdo_set(target, node, count, place, group);
 }
 
 unsigned virtual_drives_on_bus(const struct virtual_drives *set, unsigned bus,
@@ -171,7 +171,7 @@ static bool touched_at(const struct virtual_drives *set, double ratio)
 {
     double position_mm[VIRTUAL_DRIVES_MAX] = {0};
     for (unsigned i = 0; i < set->motors; i++)
-        position_mm[i] = servo_get_position_at_mm(&set->drive[i].servo, ratio);
+        position_mm[i] = takt_servo_get_position_at_mm(&set->drive[i].servo, ratio);
     return set->contact.touches(set->contact.context, position_mm);
 }
 
@@ -218,9 +218,9 @@ const struct inject_clock *virtual_drives_get_clock(const struct virtual_drives 
 /* The period of SYNC; 0: not all drives have been told the same. */
 static uint32_t sync_period_us(const struct virtual_drives *set)
 {
-    uint32_t period_us = set->motors > 0 ? servo_get_sync_period_us(&set->drive[0].servo) : 0;
+    uint32_t period_us = set->motors > 0 ? takt_servo_get_sync_period_us(&set->drive[0].servo) : 0;
     for (unsigned i = 1; i < set->motors; i++)
-        if (servo_get_sync_period_us(&set->drive[i].servo) != period_us)
+        if (takt_servo_get_sync_period_us(&set->drive[i].servo) != period_us)
             return 0;
     return period_us <= SYNC_PERIOD_MAX_US ? period_us : 0;
 }
@@ -239,7 +239,7 @@ static uint32_t shortest_heartbeat_ms(const struct virtual_drives *set)
 {
     uint32_t shortest_ms = 0;
     for (unsigned i = 0; i < set->count; i++) {
-        uint32_t watched_ms = servo_get_watched_ms(&set->drive[i].servo);
+        uint32_t watched_ms = takt_servo_get_watched_ms(&set->drive[i].servo);
         if (watched_ms != 0 && (shortest_ms == 0 || watched_ms < shortest_ms))
             shortest_ms = watched_ms;
     }
@@ -275,7 +275,7 @@ void virtual_drives_leave(struct virtual_drives *set)
 bool virtual_drives_take_by_sync(struct virtual_drives *set, const struct can_frame *frame)
 {
     uint32_t period_us = sync_period_us(set);
-    bool is_sync = servo_is_sync(&set->drive[0].servo, frame);
+    bool is_sync = takt_servo_is_sync(&set->drive[0].servo, frame);
     if (is_sync) {
         set->is_left = false;
         set->silent_ns = set->alone_ns = 0;

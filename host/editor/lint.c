@@ -126,7 +126,7 @@ static void look_at_tool(struct lint *l, const struct move *m)
 {
     const struct tool_table *table = &l->session->tools.table;
 
-    if (!m->tool_change || m->tool == 0 || tool_table_find(table, m->tool) != NULL ||
+    if (!m->tool_change || m->tool == 0 || takt_tool_table_find(table, m->tool) != NULL ||
         !is_new(l, RULE_TOOL, m->line))
         return;
     if (table->count == 0)
@@ -138,7 +138,7 @@ static void look_at_tool(struct lint *l, const struct move *m)
 /* Compensation that moves nothing. */
 static void look_at_modes(struct lint *l, const struct program *p, uint32_t line)
 {
-    const struct program_modes *m = program_get_modes(p);
+    const struct program_modes *m = takt_program_get_modes(p);
     const bool idle = m->cutter_code != NULL && m->cutter_radius_mm == 0.0;
 
     if (idle && !l->radius_told && is_new(l, RULE_RADIUS, line))
@@ -150,7 +150,7 @@ static void look_at_motion(struct lint *l, const struct move *m, bool mill)
 {
     if (m->kind == MOVE_RAPID && mill)
         look_at_rapid(l, m);
-    else if (m->kind == MOVE_FEED || move_is_bent(m))
+    else if (m->kind == MOVE_FEED || move_is_curved(m))
         look_at_cut(l, m);
     l->z_known = l->z_known || m->end.at[AXIS_Z] != l->at.at[AXIS_Z];
     l->at = m->end;
@@ -188,9 +188,10 @@ static enum command_status look_at_moves(struct lint *l)
     session_begin_reading(l->session, &reading, &config, &source);
     config.say = note_line;
     config.listener = l;
-    program_open(&reading.program, &config, &source);
+    takt_program_open(&reading.program, &config, &source);
     l->at = config.start;
-    while (program_next(&reading.program, &move, &ignored) == PROGRAM_MOVE && !interrupt_asked()) {
+    while (takt_program_next(&reading.program, &move, &ignored) == PROGRAM_MOVE &&
+           !interrupt_asked()) {
         look_at_modes(l, &reading.program, move.line);
         look_at_move(l, &move, (config.axes & of_mills) == of_mills);
     }

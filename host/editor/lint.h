@@ -10,7 +10,7 @@
 /* A height in mm as --stock-top has it; NULL: 0. False after a message. */
 bool lint_read_top(const char *text, double *top_mm);
 
-/* Looks at a program that has been checked, and prints what it finds. *findings: so many. */
+/* Looks at a program that has been checked, and prints what it finds. *findings: how many. */
 enum command_status lint_program(const struct session *s, double stock_top_mm, unsigned *findings);
 
 #endif

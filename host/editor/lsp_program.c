@@ -175,9 +175,9 @@ static void find_modes(struct arrival *a)
     config.say = arrive;
     config.listener = a;
     a->axes = config.axes;
-    program_open(&reading.program, &config, &source);
+    takt_program_open(&reading.program, &config, &source);
     while ((result == PROGRAM_MOVE || result == PROGRAM_ERROR) && !a->found && !interrupt_asked())
-        result = program_next(&reading.program, &move, &ignored);
+        result = takt_program_next(&reading.program, &move, &ignored);
 }
 
 static void write_modes(const struct lsp_program *p, uint32_t line, bool flows, char *text,
@@ -223,7 +223,7 @@ static const char *meaning_of_word(const struct line_word *w)
     return w->kind == WORD_VALUE ? meaning_of_letter(w->letter) : NULL;
 }
 
-/* Of a code that takt does not have the machine file may say what becomes of it. */
+/* The machine file may say what becomes of a code that takt does not have. */
 static const char *meaning_declared(const struct lsp_program *p, const struct line_word *w,
                                     char text[DIALECT_CODE_TEXT_MAX])
 {

@@ -10,7 +10,7 @@
 /* The line (from 0) of a text, without its end; its length is 0 behind the last one. */
 const char *lsp_text_line(const char *text, size_t text_length, uint32_t line, size_t *length);
 
-/* UTF-16 code units of the first bytes of a line, and the byte at which so many begin. */
+/* UTF-16 code units of the first bytes of a line, and the byte behind this many units. */
 size_t lsp_text_units(const char *line, size_t length, size_t bytes);
 size_t lsp_text_byte(const char *line, size_t length, size_t units);
 

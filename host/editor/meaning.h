@@ -7,11 +7,11 @@
 
 #include <stddef.h>
 
-/* Of a code, its number times ten; NULL: takt has none of this number. */
+/* Meaning of a code, its number times ten; NULL: takt has none of this number. */
 const char *meaning_of_code(char letter, unsigned number_x10);
-/* Of a word that is no code, by its letter in lower case; NULL: it is none. */
+/* Meaning of a word that is no code, by its letter in lower case; NULL: it is none. */
 const char *meaning_of_letter(char letter);
-/* Of what stands behind the label of an O-word, in any case; *length: of it. NULL: nothing known. */
+/* Meaning of what stands behind the label of an O-word, in any case; *length: of that text. NULL: nothing known. */
 const char *meaning_of_flow(const char *text, size_t *length);
 
 #endif

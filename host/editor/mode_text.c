@@ -109,7 +109,7 @@ void mode_text_write(const struct program *p, unsigned axes, char text[MODE_TEXT
         const char name[] = {'_', names[i], '\0'};
         double at;
 
-        if ((axes & 1U << i) != 0 && predefined_get(p, name, 2, &at))
+        if ((axes & 1U << i) != 0 && takt_predefined_get(p, name, 2, &at))
             add(text, " %c%.4f", names[i] - 'a' + 'A', at + 0.0);
     }
 }

@@ -76,7 +76,7 @@ static void error_at(const void *context, double part, double *x, double *y)
     const struct curve_context *c = context;
 
     *x = chart_between(c->x, part);
-    *y = cycle_chord_error_mm(c->member, cycle_step_mm(feed_of(c->question), *x)) *
+    *y = takt_cycle_chord_error_mm(c->member, takt_cycle_step_mm(feed_of(c->question), *x)) *
          c->question->resolution_per_mm;
 }
 
@@ -125,7 +125,7 @@ static void acceleration_feed_at(const void *context, double part, double *x, do
     const struct curve_context *c = context;
 
     *x = chart_between(c->x, part);
-    *y = 60 * cycle_feed_acceleration_mm_s(*x, c->member * STANDARD_GRAVITY_MM_S2);
+    *y = 60 * takt_cycle_feed_acceleration_mm_s(*x, c->member * STANDARD_GRAVITY_MM_S2);
 }
 
 static void jerk_feed_at(const void *context, double part, double *x, double *y)
@@ -133,7 +133,7 @@ static void jerk_feed_at(const void *context, double part, double *x, double *y)
     const struct curve_context *c = context;
 
     *x = chart_between(c->x, part);
-    *y = 60 * cycle_feed_jerk_mm_s(*x, c->member * 1000);
+    *y = 60 * takt_cycle_feed_jerk_mm_s(*x, c->member * 1000);
 }
 
 static void chord_feed_at(const void *context, double part, double *x, double *y)
@@ -141,7 +141,7 @@ static void chord_feed_at(const void *context, double part, double *x, double *y
     const struct curve_context *c = context;
 
     *x = chart_between(c->x, part);
-    *y = 60 * cycle_feed_chord_mm_s(*x, c->member, c->question->tolerance_mm);
+    *y = 60 * takt_cycle_feed_chord_mm_s(*x, c->member, c->question->tolerance_mm);
 }
 
 static void allowed_feed_at(const void *context, double part, double *x, double *y)
@@ -149,7 +149,7 @@ static void allowed_feed_at(const void *context, double part, double *x, double 
     const struct curve_context *c = context;
 
     *x = chart_between(c->x, part);
-    *y = 60 * cycle_feed_allowed_mm_s(&c->question->limits, *x, NULL);
+    *y = 60 * takt_cycle_feed_allowed_mm_s(&c->question->limits, *x, NULL);
 }
 
 static void write_allowed_feed(FILE *file, const struct frequency_question *question)
@@ -181,7 +181,7 @@ static void write_allowed_feed(FILE *file, const struct frequency_question *ques
 
 static double needed(const struct curve_context *c, double radius_mm, double feed_mm_s)
 {
-    return cycle_frequency_hz(radius_mm, feed_mm_s, c->question->tolerance_mm);
+    return takt_cycle_frequency_hz(radius_mm, feed_mm_s, c->question->tolerance_mm);
 }
 
 static void radius_need_at(const void *context, double part, double *x, double *y)
@@ -218,7 +218,7 @@ static void own_need_at(const void *context, double part, double *x, double *y)
     static const struct chart_range radii = {1e-3, 1e5};
     const struct curve_context *c = context;
     double radius = chart_between(radii, part);
-    double feed = cycle_feed_allowed_mm_s(&c->question->limits, radius, NULL);
+    double feed = takt_cycle_feed_allowed_mm_s(&c->question->limits, radius, NULL);
 
     *x = 60 * feed;
     *y = needed(c, radius, feed);

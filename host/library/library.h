@@ -77,12 +77,12 @@ const struct takt_message *takt_get_messages(const struct takt_job *job, unsigne
 /* What the last call that writes a text has written. */
 const char *takt_get_text(const struct takt_job *job, size_t *length);
 
-/* Of canon, convert, plan, compile and machine: their output; of plan as JSON. */
+/* Writes the output of canon, convert, plan, compile and machine; that of plan as JSON. */
 int takt_write(struct takt_job *job);
 
-/* Of run, in this order. keeps: TAKT_KEEPS_... Checks the program, plans it ahead if asked to; the drives boot. */
+/* For run, in this order. keeps: TAKT_KEEPS_... Checks the program, plans it ahead if asked to; the drives boot. */
 int takt_start(struct takt_job *job, unsigned keeps);
-/* Up to so many control cycles; fewer where the run is over. */
+/* Goes on by this many control cycles; fewer where the run is over. */
 int takt_step(struct takt_job *job, uint64_t cycles);
 int takt_is_over(const struct takt_job *job);
 /* Comes to rest and sums up: the text is the JSON of `takt run --json`. cut: not 0: ends before its time, with this status. */

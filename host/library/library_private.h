@@ -45,7 +45,7 @@ FILE *library_open_text(struct takt_job *job);
 enum command_status library_keep_text(struct takt_job *job, FILE *stream,
                                       enum command_status status);
 
-/* Of the run alone. */
+/* Closes the run alone. */
 void library_close_run(struct takt_job *job);
 
 #endif

@@ -4,7 +4,7 @@
 #include "cli/axis_unit.h"
 #include "cli/message.h"
 #include "cli/stopwatch.h"
-#include "compiled/compiled_judge.h"
+#include "compiled/compiled_verifier.h"
 #include "simulation/error_map.h"
 
 #include <math.h>
@@ -32,13 +32,13 @@ static bool keep(struct takt_job *job, unsigned keeps)
     struct plan_limits limits;
 
     job->keeps_trace = (keeps & TAKT_KEEPS_TRACE) != 0;
-    columns_init(&job->columns, machine_axes(machine), 1e-6 * (double)machine->cycle_us,
+    columns_init(&job->columns, takt_machine_axes(machine), 1e-6 * (double)machine->cycle_us,
                  simulation_get_tool(job->run.simulation) != NULL);
     if (keeps != 0)
         job->run.watcher = (struct run_watcher){see, job};
     if ((keeps & TAKT_KEEPS_REPORT) == 0)
         return true;
-    controller_plan_limits(machine, &limits);
+    takt_controller_plan_limits(machine, &limits);
     job->report = report_open(&limits);
     if (job->report == NULL)
         message_command_error("out of memory");
@@ -74,7 +74,7 @@ int takt_start(struct takt_job *job, unsigned keeps)
 /* Why a cycle was the last. */
 static enum command_status tell_why(const struct takt_job *job)
 {
-    const char *lost = field_get_problem(&job->run.simulation->field);
+    const char *lost = drive_network_get_problem(&job->run.simulation->network);
 
     message_command_error("%s", lost != NULL ? lost : "out of memory");
     return STATUS_ENVIRONMENT;
@@ -215,14 +215,14 @@ void takt_get_state(const struct takt_job *job, struct takt_state *state)
     const struct cycle_record *record = &job->last;
     struct point actual;
 
-    controller_get_actual(&s->controller, &actual);
-    *state = (struct takt_state){.state = (int)controller_get_state(&s->controller),
-                                 .cycles = job->run.judge.figures.cycles,
+    takt_controller_get_actual(&s->controller, &actual);
+    *state = (struct takt_state){.state = (int)takt_controller_get_state(&s->controller),
+                                 .cycles = job->run.verifier.figures.cycles,
                                  .cycles_since_power = s->cycles,
-                                 .axes = machine_axes(machine),
+                                 .axes = takt_machine_axes(machine),
                                  .cycle_s = 1e-6 * (double)machine->cycle_us,
                                  .override_percent = s->inputs.feed_override_percent,
-                                 .digest = job->run.judge.figures.digest};
+                                 .digest = job->run.verifier.figures.digest};
     set_point(state->act, &actual);
     state->block = record->block;
     state->line = record->line;
@@ -300,17 +300,17 @@ int takt_add_faults(struct takt_job *job, const char *bytes, size_t length)
 
 unsigned takt_count_drives(const struct takt_job *job)
 {
-    return job->run.simulation->field.drives.count;
+    return job->run.simulation->network.drives.count;
 }
 
 unsigned takt_get_node(const struct takt_job *job, unsigned drive)
 {
-    return job->run.simulation->field.drives.drive[drive].servo.config.node;
+    return job->run.simulation->network.drives.drive[drive].servo.config.node;
 }
 
 double takt_get_position_mm(const struct takt_job *job, unsigned drive)
 {
-    return virtual_drive_get_position_mm(&job->run.simulation->field.drives.drive[drive]);
+    return virtual_drive_get_position_mm(&job->run.simulation->network.drives.drive[drive]);
 }
 
 /* Objects of the dictionary are known by index, sub-index and bits. */
@@ -327,7 +327,7 @@ static bool can_be_object(uint32_t index, uint32_t sub)
 unsigned takt_read_object(struct takt_job *job, unsigned drive, uint32_t index, uint32_t sub,
                           uint32_t *value)
 {
-    struct virtual_drive *d = &job->run.simulation->field.drives.drive[drive];
+    struct virtual_drive *d = &job->run.simulation->network.drives.drive[drive];
 
     for (unsigned bits = 8; bits <= 32 && can_be_object(index, sub); bits *= 2) {
         if (virtual_drive_read_object(d, object_of(index, sub, bits), value))
@@ -339,7 +339,7 @@ unsigned takt_read_object(struct takt_job *job, unsigned drive, uint32_t index, 
 unsigned takt_write_object(struct takt_job *job, unsigned drive, uint32_t index, uint32_t sub,
                            uint32_t value)
 {
-    struct virtual_drive *d = &job->run.simulation->field.drives.drive[drive];
+    struct virtual_drive *d = &job->run.simulation->network.drives.drive[drive];
 
     for (unsigned bits = 8; bits <= 32 && can_be_object(index, sub); bits *= 2) {
         if (virtual_drive_write_object(d, object_of(index, sub, bits), value))

@@ -33,12 +33,12 @@ static void add_registers(struct page_text *text)
 {
     page_text_add(text, "\"registers\":[");
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
 
         part(text, i);
-        page_text_add(text, "[\"%s\",%u,", panel_texts[i].name, row->decimals);
-        page_text_add_string(text, panel_texts[i].unit);
-        page_text_add(text, ",%" PRId32 ",%" PRIu32 ",%u]", panel_least(row), panel_most(row),
+        page_text_add(text, "[\"%s\",%u,", takt_panel_texts[i].name, row->decimals);
+        page_text_add_string(text, takt_panel_texts[i].unit);
+        page_text_add(text, ",%" PRId32 ",%" PRIu32 ",%u]", takt_panel_least(row), panel_most(row),
                       row->states);
     }
     page_text_add(text, "]");
@@ -137,9 +137,9 @@ static void add_systems(struct page_text *text, const struct parameters *paramet
         double value[AXIS_COUNT + 1];
 
         for (unsigned k = 0; k < AXIS_COUNT; k++)
-            value[k] = parameters_get(parameters, first + k);
+            value[k] = takt_parameters_get(parameters, first + k);
         value[AXIS_COUNT] =
-            parameters_get(parameters, PARAMETER_SYSTEM_ROTATE + i * PARAMETER_SYSTEM_STRIDE);
+            takt_parameters_get(parameters, PARAMETER_SYSTEM_ROTATE + i * PARAMETER_SYSTEM_STRIDE);
         part(text, i);
         add_numbers(text, value, AXIS_COUNT + 1);
     }

@@ -52,10 +52,10 @@ static const char *write_words(struct page_client *client, enum modbus_table tab
 
 static const char *write_number(struct page_client *client, enum panel_id id, double value)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     uint8_t data[4] = {0};
 
-    if (value != maths_floor(value) || value < (double)panel_least(row) ||
+    if (value != takt_maths_floor(value) || value < (double)takt_panel_least(row) ||
         value > (double)panel_most(row) || (row->words == 1 && value > UINT16_MAX))
         return reasons[PANEL_REFUSAL_VALUE];
     if (row->table == MODBUS_COILS)
@@ -69,7 +69,7 @@ static const char *write_number(struct page_client *client, enum panel_id id, do
 
 static const char *write_text(struct page_client *client, enum panel_id id, const char *text)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     const size_t length = strlen(text), room = (size_t)row->words * 2;
     uint8_t data[PANEL_MDI_MAX] = {0};
 
@@ -85,13 +85,13 @@ static const char *write_one(struct page_client *client, const cJSON *pair)
 {
     const char *name = cJSON_GetStringValue(cJSON_GetArrayItem(pair, 0));
     const cJSON *value = cJSON_GetArrayItem(pair, 1);
-    const enum panel_id id = name != NULL ? panel_find_name(name) : REGISTER_COUNT;
+    const enum panel_id id = name != NULL ? takt_panel_find_name(name) : REGISTER_COUNT;
 
     if (id == REGISTER_COUNT)
         return reasons[PANEL_REFUSAL_ADDRESS];
     if (cJSON_IsString(value))
         return write_text(client, id, value->valuestring);
-    if (!cJSON_IsNumber(value) || panel_registers[id].form >= PANEL_TEXT)
+    if (!cJSON_IsNumber(value) || takt_panel_registers[id].form >= PANEL_TEXT)
         return reasons[PANEL_REFUSAL_VALUE];
     return write_number(client, id, value->valuedouble);
 }
@@ -146,10 +146,10 @@ static const char *write_chunk(struct page_client *client, const uint8_t *bytes,
 
     write32(data, client->upload_at);
     modbus_write16(data + 4, length);
-    modbus_write16(data + 6, crc16(bytes, length));
+    modbus_write16(data + 6, takt_crc16(bytes, length));
     memcpy(data + 2 * (size_t)CHUNK_HEAD_WORDS, bytes, length);
-    return write_words(client, MODBUS_HOLDINGS, panel_registers[REGISTER_UPLOAD_OFFSET].address,
-                       words, data);
+    return write_words(client, MODBUS_HOLDINGS,
+                       takt_panel_registers[REGISTER_UPLOAD_OFFSET].address, words, data);
 }
 
 void page_orders_take_bytes(struct page_client *client, const uint8_t *bytes, size_t length)
@@ -199,16 +199,16 @@ static const char *read_setting(const struct page_setup *setup, const cJSON *set
     if (!(drive >= 0 && drive < setup->drives && index >= 0 && index <= UINT16_MAX && sub >= 0 &&
           sub <= UINT8_MAX))
         return "no such object";
-    row = dictionary_find(setup->drive[(unsigned)drive].dictionary, (uint16_t)index, (uint8_t)sub,
-                          &has_index);
-    if (row == NULL || object_type_bytes((enum object_type)row->type) == 0)
+    row = takt_dictionary_find(setup->drive[(unsigned)drive].dictionary, (uint16_t)index,
+                               (uint8_t)sub, &has_index);
+    if (row == NULL || takt_object_type_bytes((enum object_type)row->type) == 0)
         return "no such object";
     if (!(value >= INT32_MIN && value <= UINT32_MAX))
         return reasons[PANEL_REFUSAL_VALUE];
     command->kind = PAGE_JOB_WRITE;
     command->drive = (unsigned)drive;
     command->object = PDO_MAPPED((uint32_t)row->index, row->sub,
-                                 8 * object_type_bytes((enum object_type)row->type));
+                                 8 * takt_object_type_bytes((enum object_type)row->type));
     command->value = (uint32_t)(int64_t)value;
     return NULL;
 }

@@ -28,7 +28,7 @@ struct page_path_point {
 struct page_path {
     struct page_path_point *point; /* owned; PAGE_PATH_MAX */
     size_t count;
-    size_t every, skipped; /* one of so many is kept */
+    size_t every, skipped; /* one of this many is kept */
     struct page_path_point last;
     char problem[256]; /* what is wrong with the program from some line on; empty: nothing */
     atomic_bool is_to_end;

@@ -7,7 +7,7 @@
 
 #include "page/page_link.h"
 
-/* Of the way, between two looks. */
+/* Points of the way, between two looks. */
 #define PAGE_POINTS_MAX 64
 
 enum page_peak { PAGE_VELOCITY, PAGE_ACCELERATION, PAGE_JERK, PAGE_FOLLOWING, PAGE_PEAKS };

@@ -36,7 +36,7 @@ static void turn(double v[AXIS_LINEAR_COUNT], unsigned about, double angle_rad)
     double before = *first;
     double sine, cosine;
 
-    maths_sincos(angle_rad, &sine, &cosine);
+    takt_maths_sincos(angle_rad, &sine, &cosine);
     *first = cosine * before - sine * *second;
     *second = sine * before + cosine * *second;
 }

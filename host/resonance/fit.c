@@ -4,8 +4,8 @@
  *
  * A mode is looked for on a grid of frequencies and dampings, with the best part for each; then all numbers of all modes
  * together by Gauss and Newton, in ln hz, ln damping and part. Another mode is there if that lowers n ln(y'y/n) + k ln n of
- * k numbers and n cycles (Schwarz 1978) by more than 2 ln g, g being the places of the grid: the best of so many finds that much
- * in noise. Deviations are those of the inverse of the normal matrix times the variance left.
+ * k numbers and n cycles (Schwarz 1978) by more than 2 ln g, g being the places of the grid: the best of g finds that
+ * much in noise. Deviations are those of the inverse of the normal matrix times the variance left.
  */
 #include "resonance/fit.h"
 
@@ -26,7 +26,7 @@
 #define DAMPINGS 3
 static const double dampings[DAMPINGS] = {0.01, 0.04, 0.15};
 
-/* Of a number's logarithm, for a derivative. */
+/* Step of a number's logarithm, for a derivative. */
 #define SMALL 1e-4
 
 #define STEPS    30
@@ -170,7 +170,7 @@ static bool invert(double m[NUMBERS_MAX][NUMBERS_MAX], double inverse[NUMBERS_MA
     return true;
 }
 
-/* Of the columns' normal matrix. */
+/* Inverse of the columns' normal matrix. */
 static bool invert_normal(const struct problem *p, unsigned size,
                           double inverse[NUMBERS_MAX][NUMBERS_MAX])
 {

@@ -8,7 +8,7 @@
 
 enum command_status run_open(struct run *run, const struct options *options)
 {
-    struct field_options field = {
+    struct drive_network_options network = {
         .bus = options->bus,
         .drives = options->drives,
         .drive_image = options->drive_image,
@@ -16,7 +16,7 @@ enum command_status run_open(struct run *run, const struct options *options)
         .has_script = options->inject != NULL,
     };
     enum command_status status =
-        field_check_options(&field) ? session_open(&run->session, options) : STATUS_INPUT;
+        drive_network_check_options(&network) ? session_open(&run->session, options) : STATUS_INPUT;
 
     run->session.runs = true;
     return status == STATUS_DONE ? target_setup_check(&run->session) : status;
@@ -41,18 +41,18 @@ static enum command_status plan(struct run *run)
     return status;
 }
 
-static void prepare_judge(struct run *run)
+static void prepare_verifier(struct run *run)
 {
     const struct machine *machine = &run->session.setup.machine;
     struct program_config config;
     struct source source;
 
     session_begin_reading(&run->session, &run->reading[0], &config, &source);
-    judge_init(&run->judge, machine, &config, &source);
+    verifier_init(&run->verifier, machine, &config, &source);
     session_begin_reading(&run->session, &run->reading[1], &config, &source);
-    judge_follow(&run->judge, machine, &config, &source, run->session.compiled != NULL);
+    verifier_follow(&run->verifier, machine, &config, &source, run->session.compiled != NULL);
     if (run->session.compiled != NULL && run->session.setup.shaper == SHAPER_NONE)
-        judge_follow_tool(&run->judge, &run->session.setup.vibration);
+        verifier_follow_tool(&run->verifier, &run->session.setup.vibration);
 }
 
 static void set_until(struct run *run)
@@ -75,7 +75,7 @@ enum command_status run_prepare(struct run *run)
         status = simulation_open(&run->session, &run->simulation);
     if (status != STATUS_DONE)
         return status;
-    prepare_judge(run);
+    prepare_verifier(run);
     set_until(run);
     return STATUS_DONE;
 }
@@ -84,10 +84,10 @@ enum command_status run_prepare(struct run *run)
 static void tell_answers(struct run *run)
 {
     struct program_answer answer;
-    uint32_t answers = controller_get_answers(&run->simulation->controller, &answer);
+    uint32_t answers = takt_controller_get_answers(&run->simulation->controller, &answer);
 
     if (answers != run->answers)
-        judge_answer(&run->judge, &answer);
+        verifier_answer(&run->verifier, &answer);
     run->answers = answers;
 }
 
@@ -105,17 +105,17 @@ bool run_cycle(struct run *run)
 
     tell_answers(run);
     record = simulation_get_record(run->simulation);
-    block = controller_get_block(&run->simulation->controller);
+    block = takt_controller_get_block(&run->simulation->controller);
     if (record != NULL && block != NULL) /* a target may differ, which is told */
-        good = judge_add(&run->judge, record, block) && good;
+        good = verifier_add(&run->verifier, record, block) && good;
     see(run, record, block);
     return good;
 }
 
 bool run_is_over(const struct run *run)
 {
-    return controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED ||
-           run->judge.figures.cycles >= run->until_cycles;
+    return takt_controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED ||
+           run->verifier.figures.cycles >= run->until_cycles;
 }
 
 /* The way to rest of a run that is cut short is part of it: trace and judge see it. */
@@ -138,7 +138,7 @@ void run_end_drives(struct run *run)
         return;
     run->ending.stays_on = run->session.setup.drives_stay_on != 0;
     ending_ask(&run->ending, controller, ENDING_ON_PATH);
-    while (field_get_problem(&run->simulation->field) == NULL &&
+    while (drive_network_get_problem(&run->simulation->network) == NULL &&
            !ending_is_over(&run->ending, controller)) {
         end_cycle(run);
         ending_ask(&run->ending, controller, ending_by_signals());
@@ -147,7 +147,7 @@ void run_end_drives(struct run *run)
 
 static enum summary_outcome outcome_of(const struct run *run)
 {
-    enum controller_state state = controller_get_state(&run->simulation->controller);
+    enum controller_state state = takt_controller_get_state(&run->simulation->controller);
 
     if (run->cut != STATUS_DONE)
         return OUTCOME_INTERRUPTED;
@@ -162,28 +162,28 @@ void run_finish(struct run *run, enum command_status cut)
         .session = &run->session,
         .totals = &run->totals,
         .simulation = run->simulation,
-        .judge = &run->judge,
+        .verifier = &run->verifier,
         .interrupted = cut,
         .wall_time_s = 1e-9 * (double)run->wall_ns,
     };
 
     run->cut = cut;
     source.outcome = outcome_of(run);
-    run->fault = *controller_get_fault(&run->simulation->controller);
+    run->fault = *takt_controller_get_fault(&run->simulation->controller);
     if (cut != STATUS_DONE)
         run_end_drives(run);
-    judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);
+    verifier_finish(&run->verifier, source.outcome == OUTCOME_COMPLETED);
     summary_set(&run->summary, &source);
     if (cut == STATUS_DONE)
         run_end_drives(run);
     for (unsigned i = 0; i < run->summary.buses; i++)
-        run->summary.bus[i].frames = field_get_frames(&run->simulation->field, i);
+        run->summary.bus[i].frames = drive_network_get_frames(&run->simulation->network, i);
 }
 
 void run_close(struct run *run)
 {
     simulation_close(run->simulation);
-    judge_free(&run->judge);
+    verifier_free(&run->verifier);
     compiled_close(&run->compiled);
     session_close(&run->session);
 }

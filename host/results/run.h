@@ -13,11 +13,11 @@
 
 #include "cli/status.h"
 #include "compiled/compiled.h"
-#include "judge/judge.h"
 #include "results/summary.h"
 #include "session/session.h"
 #include "simulation/ending.h"
 #include "simulation/simulation.h"
+#include "verifier/verifier.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -32,10 +32,10 @@ struct run_watcher {
 struct run {
     struct session session;
     struct session_totals totals;
-    struct session_reading reading[2]; /* the judge's */
-    struct judge judge;
+    struct session_reading reading[2]; /* the verifier's */
+    struct verifier verifier;
     struct compiled compiled;
-    uint32_t answers; /* of the run that the judge has been told */
+    uint32_t answers; /* of the run that the verifier has been told */
     struct simulation *simulation;
     struct run_watcher watcher; /* the caller's; without see: nobody */
     struct ending ending;

@@ -134,7 +134,7 @@ static bool open_bus_log(struct run_outputs *o, struct simulation *simulation)
     if (o->bus_log == NULL || o->frames == NULL)
         return false;
     candump_init(o->bus_log, o->file[RUN_BUS_LOG].stream, "can0");
-    field_log(&simulation->field, o->frames, o->bus_log);
+    drive_network_log(&simulation->network, o->frames, o->bus_log);
     return true;
 }
 
@@ -143,7 +143,7 @@ static bool open_trace(struct run_outputs *o, const struct machine *machine)
     o->trace = malloc(sizeof *o->trace);
     if (o->trace == NULL)
         return false;
-    trace_writer_init(o->trace, o->file[RUN_TRACE].stream, machine_axes(machine),
+    trace_writer_init(o->trace, o->file[RUN_TRACE].stream, takt_machine_axes(machine),
                       1e-6 * (double)machine->cycle_us, o->tool != NULL);
     return true;
 }
@@ -154,7 +154,7 @@ static bool open_report(struct run_outputs *o, const struct machine *machine)
 
     if (report_get_plots_missing() != NULL)
         (void)fprintf(stderr, "takt run: warning: %s\n", report_get_plots_missing());
-    controller_plan_limits(machine, &limits);
+    takt_controller_plan_limits(machine, &limits);
     o->report = report_open(&limits);
     return o->report != NULL;
 }
@@ -193,7 +193,7 @@ static void open_pulse_log(struct run_outputs *o, const struct machine *machine,
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         config.rate_max_hz[i] = machine->axis[i].step_rate_max_hz;
     pulse_log_begin(&o->pulse_log, o->file[RUN_PULSE_LOG].stream, &config);
-    virtual_steppers_listen(&simulation->field.steppers,
+    virtual_steppers_listen(&simulation->network.steppers,
                             &(struct virtual_steppers_listener){pulse_log_take, &o->pulse_log});
 }
 

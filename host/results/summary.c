@@ -3,7 +3,7 @@
 #include "base/maths.h"
 #include "cli/axis_unit.h"
 
-/* Above the largest chord error a machine allows: rounding of the planner's and the judge's formula. */
+/* Above the largest chord error a machine allows: rounding of the planner's and the verifier's formula. */
 #define SUMMARY_CHORD_ROOM_MM 1e-6
 
 const char *summary_outcome_name(enum summary_outcome outcome)
@@ -63,15 +63,15 @@ static void check_axis(struct summary *summary, unsigned i)
                                             {"deg/s", "deg/s2", "deg/s3"}};
     const char *const *unit = units[axis_unit_is_rotary(i) ? 1 : 0];
     const struct machine_axis *axis = &summary->machine->axis[i];
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
     double ratio = axis_unit_ratio(i);
 
     add_check(summary, "velocity", i, unit[0], figures->velocity_mm_s[i] * ratio,
-              axis->max_velocity_mm_s * ratio * JUDGE_VELOCITY_RATIO);
+              axis->max_velocity_mm_s * ratio * VERIFIER_VELOCITY_RATIO);
     add_check(summary, "acceleration", i, unit[1], figures->acceleration_mm_s2[i] * ratio,
-              axis->max_acceleration_mm_s2 * ratio * JUDGE_ACCELERATION_RATIO);
+              axis->max_acceleration_mm_s2 * ratio * VERIFIER_ACCELERATION_RATIO);
     add_check(summary, "jerk", i, unit[2], figures->jerk_mm_s3[i] * ratio,
-              axis->max_jerk_mm_s3 * ratio * JUDGE_JERK_RATIO);
+              axis->max_jerk_mm_s3 * ratio * VERIFIER_JERK_RATIO);
     if (axis->following_error_max_mm > 0)
         add_check(summary, "following", i, axis_unit_name(i),
                   figures->following_error_mm[i] * ratio, axis->following_error_max_mm * ratio);
@@ -82,12 +82,12 @@ static void check_axis(struct summary *summary, unsigned i)
 
 static void check_path(struct summary *summary)
 {
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
 
     add_check(summary, "landing", AXIS_COUNT, "mm", figures->landing_error_mm,
-              JUDGE_LANDING_MAX_MM);
+              VERIFIER_LANDING_MAX_MM);
     add_check(summary, "path", AXIS_COUNT, "mm", figures->path_error_mm,
-              JUDGE_PATH_MAX_MM + figures->chord_error_mm);
+              VERIFIER_PATH_MAX_MM + figures->chord_error_mm);
     if (figures->smoothed_path_part > 0) {
         add_check(summary, "smoothed_path", AXIS_COUNT, "of P", figures->smoothed_path_part, 1);
         add_check(summary, "smoothed_corner", AXIS_COUNT, "of P", figures->smoothed_corner_part, 1);
@@ -99,11 +99,11 @@ static void check_path(struct summary *summary)
 /* After a complete run nothing may be missing; a run that ended early may only not have done what is not there. */
 static void check_blocks(struct summary *summary, const struct summary_source *source)
 {
-    double missing = source->judge->strayed ? 1 : 0;
+    double missing = source->verifier->strayed ? 1 : 0;
 
-    if (source->outcome == OUTCOME_COMPLETED && !source->judge->strayed)
+    if (source->outcome == OUTCOME_COMPLETED && !source->verifier->strayed)
         missing = source->totals->is_open
-                      ? maths_abs(judge_get_missing(source->judge))
+                      ? maths_abs(verifier_get_missing(source->verifier))
                       : maths_abs((double)source->totals->last - (double)summary->figures.blocks);
     add_check(summary, "blocks_missing", AXIS_COUNT, "", missing, 0);
 }
@@ -140,7 +140,7 @@ static bool is_planned(const struct summary *summary)
  * Predicted and observed; what faults of the buses, and frames that nobody wants or that come by a timer of the drive, have
  * done is no fault of the prediction.
  */
-static void set_responses(struct summary *summary, const struct field *field,
+static void set_responses(struct summary *summary, const struct drive_network *network,
                           const struct drives *drives, unsigned index)
 {
     struct summary_bus *bus = &summary->bus[index];
@@ -149,40 +149,40 @@ static void set_responses(struct summary *summary, const struct field *field,
     bus_plan_set(&bus->plan, summary->machine, drives, index);
     if (!summary->responses_observed)
         return;
-    bus_plan_get_observed(&bus->plan, &field->bus[index], bus->response_ns);
+    bus_plan_get_observed(&bus->plan, &network->bus[index], bus->response_ns);
     for (unsigned i = 0; i < bus->plan.count; i++)
         nearest =
             maths_max(nearest, 100.0 * (double)bus->response_ns[i] / (double)bus->plan.worst_ns[i]);
-    if (field_is_sound(field) && is_planned(summary))
+    if (drive_network_is_sound(network) && is_planned(summary))
         add_bus_check(summary, index, "bus_response", nearest);
 }
 
-static void set_buses(struct summary *summary, const struct field *field,
+static void set_buses(struct summary *summary, const struct drive_network *network,
                       const struct drives *drives)
 {
-    summary->buses = field->buses;
-    summary->responses_observed = !field->is_outside && summary->figures.cycles > 0;
-    for (unsigned i = 0; i < field->buses; i++) {
+    summary->buses = network->buses;
+    summary->responses_observed = !network->is_outside && summary->figures.cycles > 0;
+    for (unsigned i = 0; i < network->buses; i++) {
         struct summary_bus *bus = &summary->bus[i];
         const double found_percent = summary->drives.load[i].percent;
 
-        bus->frames = field_get_frames(field, i);
-        bus->load_percent = field_get_load_percent(field, i);
+        bus->frames = drive_network_get_frames(network, i);
+        bus->load_percent = drive_network_get_load_percent(network, i);
         bus->predicted_percent = found_percent > 0
                                      ? found_percent
                                      : machine_setup_predict_load_percent(summary->machine, i);
         add_bus_check(summary, i, "bus_load", bus->load_percent);
-        set_responses(summary, field, drives, i);
+        set_responses(summary, network, drives, i);
     }
 }
 
-static void set_pace(struct summary *summary, const struct field *field)
+static void set_pace(struct summary *summary, const struct drive_network *network)
 {
-    summary->is_paced = field->is_paced;
-    if (!field->is_paced)
+    summary->is_paced = network->is_paced;
+    if (!network->is_paced)
         return;
-    pace_get_figures(&field->pace, &summary->pace);
-    summary->permission = field->permission;
+    pace_get_figures(&network->pace, &summary->pace);
+    summary->permission = network->permission;
 }
 
 /* Whatever the image did otherwise than the host, it did wrong. */
@@ -197,7 +197,7 @@ static void set_target(struct summary *summary, const struct simulation *simulat
 /* The same of drives. */
 static void set_drive_images(struct summary *summary, const struct simulation *simulation)
 {
-    const struct drive_images *images = &simulation->field.images;
+    const struct drive_images *images = &simulation->network.images;
 
     if (images->count == 0)
         return;
@@ -218,7 +218,7 @@ static void set_fault(struct summary *summary, const struct diagnostic *fault)
     const char *remedy = drives_table_remedy(fault);
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    (void)diagnostic_text(fault, text);
+    (void)takt_diagnostic_text(fault, text);
     (void)snprintf(summary->fault, sizeof summary->fault, "%s%s%s", text,
                    remedy[0] != '\0' ? ": " : "", remedy);
 }
@@ -227,7 +227,7 @@ void summary_set(struct summary *summary, const struct summary_source *source)
 {
     const struct simulation *simulation = source->simulation;
     const struct machine *machine = &source->session->setup.machine;
-    const struct drives *drives = controller_get_drives(&simulation->controller);
+    const struct drives *drives = takt_controller_get_drives(&simulation->controller);
 
     *summary = (struct summary){
         .program = source->session->program.name,
@@ -236,16 +236,16 @@ void summary_set(struct summary *summary, const struct summary_source *source)
         .interrupted = source->interrupted,
         .cycle_s = 1e-6 * (double)machine->cycle_us,
         .wall_time_s = source->wall_time_s,
-        .figures = source->judge->figures,
+        .figures = source->verifier->figures,
         .correction = simulation->correction,
         .tool_point = simulation->tool_point,
-        .steppers = &simulation->field.steppers,
-        .interpolator = *controller_get_interpolator_errors(&simulation->controller),
+        .steppers = &simulation->network.steppers,
+        .interpolator = *takt_controller_get_interpolator_errors(&simulation->controller),
     };
     tool_point_finish(&summary->tool_point);
     drives_table_set(&summary->drives, drives);
     if (source->outcome == OUTCOME_FAULTED)
-        set_fault(summary, controller_get_fault(&simulation->controller));
+        set_fault(summary, takt_controller_get_fault(&simulation->controller));
     set_cost(summary, &simulation->cost);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine->axis[i].present)
@@ -253,8 +253,8 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     }
     check_path(summary);
     check_blocks(summary, source);
-    set_buses(summary, &simulation->field, drives);
-    set_pace(summary, &simulation->field);
+    set_buses(summary, &simulation->network, drives);
+    set_pace(summary, &simulation->network);
     set_target(summary, simulation);
     set_drive_images(summary, simulation);
     check_spindle(summary, &simulation->spindle);

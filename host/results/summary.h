@@ -5,11 +5,11 @@
 #define TAKT_HOST_SUMMARY_H
 
 #include "base/error.h"
-#include "judge/judge.h"
 #include "session/session.h"
 #include "simulation/bus_plan.h"
 #include "simulation/drives_table.h"
 #include "simulation/simulation.h"
+#include "verifier/verifier.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -50,7 +50,7 @@ struct summary {
     char fault[SUMMARY_FAULT_MAX];   /* OUTCOME_FAULTED */
     double cycle_s;
     double wall_time_s;
-    struct judge_figures figures;
+    struct verifier_figures figures;
     struct correction_watch correction;
     struct tool_point tool_point;
     const struct virtual_steppers *steppers;
@@ -75,7 +75,7 @@ struct summary_source {
     const struct session *session;
     const struct session_totals *totals;
     const struct simulation *simulation;
-    const struct judge *judge; /* finished */
+    const struct verifier *verifier; /* finished */
     enum summary_outcome outcome;
     enum command_status interrupted; /* OUTCOME_INTERRUPTED: the status it ends with */
     double wall_time_s;

@@ -38,8 +38,8 @@ static void add_correction(cJSON *root, const struct summary *summary)
     list = cJSON_AddArrayToObject(object, "layers");
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
         if ((watch->present & 1U << i) != 0)
-            cJSON_AddItemToArray(
-                list, cJSON_CreateString(correction_layer_name((enum correction_layer_number)i)));
+            cJSON_AddItemToArray(list, cJSON_CreateString(takt_correction_layer_name(
+                                           (enum correction_layer_number)i)));
     }
     list = cJSON_AddArrayToObject(object, "axes");
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
@@ -86,7 +86,8 @@ static void write_correction(FILE *stream, const struct summary *summary)
     (void)fputs("  correction   ", stream);
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
         if ((watch->present & 1U << i) != 0)
-            (void)fprintf(stream, " %s", correction_layer_name((enum correction_layer_number)i));
+            (void)fprintf(stream, " %s",
+                          takt_correction_layer_name((enum correction_layer_number)i));
     }
     (void)fprintf(stream, ", %.4g mm at most; it cost\n", summary->figures.correction_mm);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {

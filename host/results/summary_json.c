@@ -62,7 +62,7 @@ static void add_of_axis(cJSON *object, unsigned axis, const char *name, const ch
 static void add_axis(cJSON *axes, const struct summary *summary, unsigned i)
 {
     const struct machine_axis *axis = &summary->machine->axis[i];
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
     char name[2] = {AXIS_LETTERS[i], '\0'};
     cJSON *object = cJSON_CreateObject();
 
@@ -109,12 +109,12 @@ static void add_axes(cJSON *root, const struct summary *summary)
 
 static void add_path(cJSON *root, const struct summary *summary)
 {
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
 
     cJSON_AddNumberToObject(root, "chord_error_max_mm", figures->chord_error_mm);
     cJSON_AddNumberToObject(root, "path_error_max_mm", figures->path_error_mm);
     cJSON_AddNumberToObject(root, "landing_error_max_mm", figures->landing_error_mm);
-    cJSON_AddNumberToObject(root, "joint_feed_step_max_mm_s", figures->joint_feed_step_mm_s);
+    cJSON_AddNumberToObject(root, "joint_feed_step_max_mm_s", figures->junction_feed_step_mm_s);
     cJSON_AddNumberToObject(root, "correction_max_mm", figures->correction_mm);
 }
 

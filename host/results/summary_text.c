@@ -17,7 +17,7 @@ static void write_time(FILE *stream, double time_s)
 
 static void write_head(FILE *stream, const struct summary *summary)
 {
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
 
     (void)fprintf(stream, "%s on %s: %s\n", summary->program, summary->machine->name,
                   summary_outcome_name(summary->outcome));
@@ -46,7 +46,7 @@ static void write_peak(FILE *stream, double value, double limit, double ratio)
 static void write_axis(FILE *stream, const struct summary *summary, unsigned i)
 {
     const struct machine_axis *axis = &summary->machine->axis[i];
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
     double ratio = axis_unit_ratio(i);
 
     (void)fprintf(stream, "  %c (%s)%*s", AXIS_LETTERS[i], axis_unit_name(i),
@@ -161,12 +161,12 @@ static void write_target(FILE *stream, const struct summary *summary)
 
 static void write_path(FILE *stream, const struct summary *summary)
 {
-    const struct judge_figures *figures = &summary->figures;
+    const struct verifier_figures *figures = &summary->figures;
 
     (void)fprintf(stream, "\n  landing error %.3g mm   path error %.3g mm   chord error %.3g mm\n",
                   figures->landing_error_mm, figures->path_error_mm, figures->chord_error_mm);
-    (void)fprintf(stream, "  feed step     %.3g mm/s at most at a joint\n",
-                  figures->joint_feed_step_mm_s);
+    (void)fprintf(stream, "  feed step     %.3g mm/s at most at a junction\n",
+                  figures->junction_feed_step_mm_s);
     write_buses(stream, summary);
     drives_table_write_text(stream, &summary->drives);
     write_pace(stream, summary);

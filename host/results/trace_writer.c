@@ -43,7 +43,7 @@ void trace_writer_add(struct trace_writer *w, const struct cycle_record *record,
         write_buffer(w);
     at = w->buffer + w->used;
     for (unsigned i = 0; i < count; i++) {
-        at += decimal_write(at, value[i], w->column[i].places);
+        at += takt_decimal_write(at, value[i], w->column[i].places);
         *at++ = i + 1 < count ? ',' : '\n';
     }
     w->used = (size_t)(at - w->buffer);

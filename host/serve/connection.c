@@ -14,7 +14,7 @@ void connection_open(struct connection *connection, int socket, const struct mod
     connection->socket = socket;
     connection->served_ns = now_ns;
     connection->map = *map;
-    modbus_tcp_init(&connection->frame);
+    takt_modbus_tcp_init(&connection->frame);
 }
 
 void connection_close(struct connection *connection)
@@ -72,7 +72,7 @@ static bool answer(struct connection *c, uint64_t now_ns, uint64_t *answered)
     const uint8_t *data = c->input + c->input_at;
     size_t length = 0;
 
-    switch (modbus_tcp_take(&c->frame, &c->map, &data, &c->input_size, c->output, &length)) {
+    switch (takt_modbus_tcp_take(&c->frame, &c->map, &data, &c->input_size, c->output, &length)) {
     case MODBUS_TCP_MORE:
         break;
     case MODBUS_TCP_REPLY:

@@ -124,8 +124,8 @@ static void open_console(struct console_server *s)
     s->port = config.port;
     config.port = (struct console_port){look, order, unlock, tell, check, write_output, s};
     config.lines = &s->lines;
-    lines_init(&s->lines, s->text, sizeof s->text);
-    console_init(&s->console, &config);
+    takt_lines_init(&s->lines, s->text, sizeof s->text);
+    takt_console_init(&s->console, &config);
 }
 
 bool console_server_open(struct console_server *s, const struct console_server_config *config,
@@ -162,12 +162,12 @@ static void begin_sender(struct console_server *s, int file)
     s->overflows = false;
     s->senders++;
     s->config.enter(s->config.context);
-    console_enter(&s->console);
+    takt_console_enter(&s->console);
 }
 
 static void end_sender(struct console_server *s)
 {
-    console_leave(&s->console);
+    takt_console_leave(&s->console);
     s->config.leave(s->config.context);
     if (s->sender != s->terminal)
         (void)close(s->sender);
@@ -240,14 +240,14 @@ static bool send_output(struct console_server *s)
 /* As many as find room, so that none is lost. False: the sender is gone. */
 static bool receive(struct console_server *s)
 {
-    const uint32_t room = lines_room(&s->lines);
+    const uint32_t room = takt_lines_room(&s->lines);
     uint8_t bytes[INPUT_MAX];
     const ssize_t received =
         read(s->sender, bytes, room < sizeof bytes ? (size_t)room : sizeof bytes);
 
     for (ssize_t i = 0; i < received; i++) {
         s->lines_taken += bytes[i] == '\n';
-        console_take(&s->console, bytes[i]);
+        takt_console_take(&s->console, bytes[i]);
     }
     return received > 0 || (received < 0 && is_for_later());
 }
@@ -266,7 +266,7 @@ static void serve_sender(struct console_server *s, short events)
 
 static short wanted_events(const struct console_server *s)
 {
-    const int in = console_has_room(&s->console) ? POLLIN : 0;
+    const int in = takt_console_has_room(&s->console) ? POLLIN : 0;
 
     return (short)(in | (s->output_size > 0 ? POLLOUT : 0));
 }
@@ -280,7 +280,7 @@ static bool serve_round(struct console_server *s)
         {.fd = s->sender, .events = wanted_events(s)},
     };
 
-    if (poll(files, POLL_COUNT, console_is_waiting(&s->console) ? WAITING_MS : IDLE_MS) < 0)
+    if (poll(files, POLL_COUNT, takt_console_is_waiting(&s->console) ? WAITING_MS : IDLE_MS) < 0)
         return errno == EINTR;
     if (files[POLL_WAKE].revents != 0)
         return false;
@@ -289,7 +289,7 @@ static bool serve_round(struct console_server *s)
     if (files[POLL_LISTENER].revents != 0)
         accept_sender(s);
     look_at_terminal(s);
-    console_step(&s->console);
+    takt_console_step(&s->console);
     if (s->sender >= 0 && !send_output(s))
         end_sender(s);
     return true;

@@ -56,7 +56,7 @@ bool console_server_open(struct console_server *s, const struct console_server_c
 bool console_server_start(struct console_server *s);
 void console_server_close(struct console_server *s);
 
-/* Of TCP. */
+/* Its port of TCP. */
 uint16_t console_server_get_port(const struct console_server *s);
 
 #endif

@@ -8,7 +8,7 @@ static enum modbus_exception read_map(void *context, enum modbus_table table, ui
                                       uint16_t count, uint8_t *data)
 {
     struct panel_seat *seat = context;
-    const struct modbus_map map = panel_client_map(&seat->client);
+    const struct modbus_map map = takt_panel_client_map(&seat->client);
     enum modbus_exception exception;
 
     panel_host_lock(seat->host);
@@ -21,7 +21,7 @@ static enum modbus_exception write_map(void *context, enum modbus_table table, u
                                        uint16_t count, const uint8_t *data)
 {
     struct panel_seat *seat = context;
-    const struct modbus_map map = panel_client_map(&seat->client);
+    const struct modbus_map map = takt_panel_client_map(&seat->client);
     enum modbus_exception exception;
 
     panel_host_lock(seat->host);
@@ -37,7 +37,7 @@ static struct modbus_map enter(void *context, unsigned place)
 
     panel_host_lock(host);
     seat->host = host;
-    panel_client_enter(&seat->client, &host->panel);
+    takt_panel_client_enter(&seat->client, &host->panel);
     panel_host_unlock(host);
     return (struct modbus_map){.read = read_map, .write = write_map, .context = seat};
 }
@@ -47,7 +47,7 @@ static void leave(void *context, unsigned place)
     struct panel_host *host = context;
 
     panel_host_lock(host);
-    panel_client_leave(&host->seat[place].client);
+    takt_panel_client_leave(&host->seat[place].client);
     panel_host_unlock(host);
 }
 
@@ -72,7 +72,7 @@ void panel_host_init(struct panel_host *host, const struct panel_config *config)
     (void)pthread_mutexattr_settype(&attributes, PTHREAD_MUTEX_RECURSIVE);
     (void)pthread_mutex_init(&host->lock, &attributes);
     (void)pthread_mutexattr_destroy(&attributes);
-    panel_init(&host->panel, config);
+    takt_panel_init(&host->panel, config);
 }
 
 struct server_host panel_host_get(struct panel_host *host)
@@ -105,7 +105,7 @@ enum panel_refusal panel_host_order(struct panel_host *host, const struct panel_
     enum panel_refusal refusal;
 
     panel_host_lock(host);
-    refusal = panel_client_order(&host->seat[PANEL_HOST_CONSOLE].client, order);
+    refusal = takt_panel_client_order(&host->seat[PANEL_HOST_CONSOLE].client, order);
     panel_host_unlock(host);
     return refusal;
 }
@@ -115,7 +115,7 @@ enum panel_refusal panel_host_give_password(struct panel_host *host, uint32_t pa
     enum panel_refusal refusal;
 
     panel_host_lock(host);
-    refusal = panel_client_unlock(&host->seat[PANEL_HOST_CONSOLE].client, password);
+    refusal = takt_panel_client_unlock(&host->seat[PANEL_HOST_CONSOLE].client, password);
     panel_host_unlock(host);
     return refusal;
 }

@@ -243,7 +243,7 @@ bool program_store_read(void *context, struct source *source)
         *source = (struct source){.read = read_stream, .seek = seek_stream, .context = store};
         return true;
     }
-    source_open_text(source, &store->text, store->program, store->size);
+    takt_source_open_text(source, &store->text, store->program, store->size);
     return true;
 }
 

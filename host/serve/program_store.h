@@ -17,7 +17,7 @@
 
 #define PROGRAM_STORE_PATH_MAX 4096
 
-/* Of a streamed program. */
+/* State of a streamed program. */
 enum program_stream {
     PROGRAM_STREAM_NONE, /* it is no stream */
     PROGRAM_STREAM_COMING,

@@ -84,7 +84,7 @@ static void open_line(struct server *server)
     struct modbus_map map;
 
     map = server->config.host.enter(server->config.host.context, SERVER_CLIENTS_MAX);
-    modbus_rtu_init(&server->line, &map, server->config.unit, server->config.serial_gap_us);
+    takt_modbus_rtu_init(&server->line, &map, server->config.unit, server->config.serial_gap_us);
 }
 
 bool server_open(struct server *server, const struct server_config *config, const char **problem)
@@ -211,9 +211,9 @@ static void serve_line(struct server *server, short events)
         (events & POLLIN) != 0 ? read(server->config.serial, bytes, sizeof bytes) : 0;
 
     for (ssize_t i = 0; i < received; i++)
-        send_on_line(server, reply, modbus_rtu_take(&server->line, bytes[i], now_us, reply));
+        send_on_line(server, reply, takt_modbus_rtu_take(&server->line, bytes[i], now_us, reply));
     if (received <= 0)
-        send_on_line(server, reply, modbus_rtu_idle(&server->line, now_us, reply));
+        send_on_line(server, reply, takt_modbus_rtu_idle(&server->line, now_us, reply));
     if (received <= 0 && (events & (POLLHUP | POLLERR)) != 0)
         server->line_rest_ns = time_ns + SLEEP_MS * NS_PER_MS;
 }

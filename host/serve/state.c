@@ -50,7 +50,7 @@ static void write_parameters(FILE *stream, const struct parameters *parameters)
     unsigned number = PARAMETERS_LOCAL; /* those up to here are a subroutine's own */
     double value;
 
-    while (parameters_next(parameters, &number, &value))
+    while (takt_parameters_next(parameters, &number, &value))
         (void)fprintf(stream, "parameter %u %.17g\n", number, value);
 }
 
@@ -160,7 +160,7 @@ static bool take_parameter(struct state *s, const char *at)
     double value;
 
     return take_count(&at, &number) && number >= 1 && number <= PARAMETER_NUMBER_MAX &&
-           take_number(&at, &value) && parameters_set(&s->parameters, number, value);
+           take_number(&at, &value) && takt_parameters_set(&s->parameters, number, value);
 }
 
 static bool take_program(struct state *s, const char *at)
@@ -247,7 +247,7 @@ bool state_read(struct state *s, const char *text, size_t length,
 
 static uint32_t add_number(uint32_t sum, double value)
 {
-    return crc32_add(sum, (const void *)&value, sizeof value);
+    return takt_crc32_add(sum, (const void *)&value, sizeof value);
 }
 
 uint32_t state_sum_tools(const struct tool *tools, size_t count)
@@ -270,7 +270,7 @@ uint32_t state_sum_parameters(const struct parameters *parameters)
     unsigned number = 0;
     double value;
 
-    while (parameters_next(parameters, &number, &value))
+    while (takt_parameters_next(parameters, &number, &value))
         sum = add_number(add_number(sum, number), value);
     return sum;
 }

@@ -54,7 +54,7 @@ char *state_write(const struct state *state, size_t *length);
 bool state_read(struct state *state, const char *text, size_t length,
                 char problem[STATE_PROBLEM_MAX + 1]);
 
-/* Of what a file has said, to find out whether it has changed since. */
+/* Checksums of what a file has said, to find out whether it has changed since. */
 uint32_t state_sum_tools(const struct tool *tools, size_t count);
 uint32_t state_sum_parameters(const struct parameters *parameters);
 

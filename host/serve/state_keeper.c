@@ -12,18 +12,19 @@ static bool is_kept(const struct store *store, const char *text, size_t length)
     const uint8_t *bytes;
     uint32_t size;
 
-    return store_get(store, &bytes, &size) && size == length && memcmp(bytes, text, length) == 0;
+    return takt_store_get(store, &bytes, &size) && size == length &&
+           memcmp(bytes, text, length) == 0;
 }
 
 bool state_keeper_keep(struct store *store, const struct state *state)
 {
     size_t length = 0;
     char *text = state_write(state, &length);
-    bool good = text != NULL && length <= store_room(store);
+    bool good = text != NULL && length <= takt_store_room(store);
 
     if (good && !is_kept(store, text, length))
-        good = store_begin(store, (uint32_t)length) &&
-               store_write(store, (const uint8_t *)text, length) && store_commit(store);
+        good = takt_store_begin(store, (uint32_t)length) &&
+               takt_store_write(store, (const uint8_t *)text, length) && takt_store_commit(store);
     free(text);
     return good;
 }
@@ -40,7 +41,7 @@ bool state_keeper_open(struct state_keeper *k, const char *folder, size_t tools_
         return false;
     }
     port = state_disk_get_port(&k->disk);
-    store_open(&k->store, &port);
+    takt_store_open(&k->store, &port);
     atomic_init(&k->is_full, false);
     atomic_init(&k->has_failed, false);
     return true;
@@ -51,7 +52,7 @@ const char *state_keeper_get(const struct state_keeper *k, size_t *length)
     const uint8_t *bytes;
     uint32_t size;
 
-    if (!store_get(&k->store, &bytes, &size))
+    if (!takt_store_get(&k->store, &bytes, &size))
         return NULL;
     *length = size;
     return (const char *)bytes;

@@ -104,7 +104,7 @@ static bool load_stored(struct drive_service *service, struct servo *drive)
     struct text text;
     bool good;
 
-    servo_keep(drive, &(struct drive_keeper){keep_stored, service});
+    takt_servo_keep(drive, &(struct drive_keeper){keep_stored, service});
     store_path(service, drive, path);
     if (access(path, F_OK) != 0)
         return true;

@@ -54,7 +54,7 @@ static bool unlock(struct panel_line *line, double password)
 {
     if (password == 0)
         return true;
-    if (password > (double)PANEL_U32_MOST || password != maths_floor(password)) {
+    if (password > (double)PANEL_U32_MOST || password != takt_maths_floor(password)) {
         message_command_error("--password %.0f: a whole number up to 4294967295 is expected",
                               password);
         return false;
@@ -113,7 +113,7 @@ static const char *refusal_text(struct panel_line *line)
         [PANEL_REFUSAL_ADDRESS] = ": it cannot be written",
         [PANEL_REFUSAL_BUSY] = ": the controller did not take it in time; try again",
     };
-    const struct panel_register *row = &panel_registers[REGISTER_REFUSAL];
+    const struct panel_register *row = &takt_panel_registers[REGISTER_REFUSAL];
     uint16_t reason = 0;
 
     if (client_read(&line->client, table_of(row), row->address, 1, &reason) &&
@@ -127,16 +127,16 @@ void panel_line_report(struct panel_line *line, enum panel_id id, const char *wh
     const int exception = client_get_exception(&line->client);
 
     if (exception == 0)
-        message_command_error("%s: it cannot be %s: %s", panel_texts[id].name, what,
+        message_command_error("%s: it cannot be %s: %s", takt_panel_texts[id].name, what,
                               client_get_problem(&line->client));
     else
-        message_command_error("%s: exception %02d%s", panel_texts[id].name, exception,
+        message_command_error("%s: exception %02d%s", takt_panel_texts[id].name, exception,
                               refusal_text(line));
 }
 
 static bool read_words(struct panel_line *line, enum panel_id id, uint16_t *word)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
 
     if (client_read(&line->client, table_of(row), row->address, row->words, word))
         return true;
@@ -146,7 +146,7 @@ static bool read_words(struct panel_line *line, enum panel_id id, uint16_t *word
 
 bool panel_line_get(struct panel_line *line, enum panel_id id, int64_t *value)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     uint16_t word[CLIENT_READ_MAX];
     uint32_t bits;
 
@@ -161,7 +161,7 @@ bool panel_line_get(struct panel_line *line, enum panel_id id, int64_t *value)
 
 bool panel_line_set(struct panel_line *line, enum panel_id id, int64_t value)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     const uint32_t bits = (uint32_t)(uint64_t)value;
     const uint16_t word[] = {(uint16_t)(bits >> 16), (uint16_t)bits};
 
@@ -174,7 +174,7 @@ bool panel_line_set(struct panel_line *line, enum panel_id id, int64_t value)
 
 static bool read_text(struct panel_line *line, enum panel_id id, char *text)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     uint16_t word[CLIENT_READ_MAX];
 
     if (!read_words(line, id, word))
@@ -191,7 +191,7 @@ static bool read_text(struct panel_line *line, enum panel_id id, char *text)
 
 bool panel_line_read(struct panel_line *line, enum panel_id id, char text[PANEL_VALUE_MAX + 1])
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     int64_t value;
 
     if (row->form == PANEL_TEXT || row->form == PANEL_BYTES)
@@ -199,13 +199,13 @@ bool panel_line_read(struct panel_line *line, enum panel_id id, char text[PANEL_
     if (!panel_line_get(line, id, &value))
         return false;
     (void)snprintf(text, PANEL_VALUE_MAX + 1, "%.*f", (int)row->decimals,
-                   (double)value / panel_counts_per_unit(id));
+                   (double)value / takt_panel_counts_per_unit(id));
     return true;
 }
 
 static enum command_status write_text(struct panel_line *line, enum panel_id id, const char *text)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     uint16_t word[CLIENT_WRITE_MAX] = {0};
     const size_t length = strlen(text);
 
@@ -224,8 +224,8 @@ static enum command_status write_text(struct panel_line *line, enum panel_id id,
 
 enum command_status panel_line_write(struct panel_line *line, enum panel_id id, const char *text)
 {
-    const struct panel_register *row = &panel_registers[id];
-    const double counts_per_unit = panel_counts_per_unit(id);
+    const struct panel_register *row = &takt_panel_registers[id];
+    const double counts_per_unit = takt_panel_counts_per_unit(id);
     char *end;
     double value;
 
@@ -236,26 +236,26 @@ enum command_status panel_line_write(struct panel_line *line, enum panel_id id, 
     if (row->form == PANEL_TEXT)
         return write_text(line, id, text);
     value = strtod(text, &end) * counts_per_unit;
-    if (end == text || *end != '\0' || !(value >= (double)panel_least(row) - 0.5) ||
+    if (end == text || *end != '\0' || !(value >= (double)takt_panel_least(row) - 0.5) ||
         !(value <= (double)panel_most(row) + 0.5)) {
         message_command_error("%s %s: a number from %.*f to %.*f is expected",
                               panel_text(row)->name, text, (int)row->decimals,
-                              (double)panel_least(row) / counts_per_unit, (int)row->decimals,
+                              (double)takt_panel_least(row) / counts_per_unit, (int)row->decimals,
                               (double)panel_most(row) / counts_per_unit);
         return STATUS_INPUT;
     }
-    return panel_line_set(line, id, (int64_t)maths_round(value)) ? STATUS_DONE : STATUS_INPUT;
+    return panel_line_set(line, id, (int64_t)takt_maths_round(value)) ? STATUS_DONE : STATUS_INPUT;
 }
 
 enum panel_id panel_line_find(const char *name)
 {
     const char *names[REGISTER_COUNT];
-    const enum panel_id id = panel_find_name(name);
+    const enum panel_id id = takt_panel_find_name(name);
 
     if (id != REGISTER_COUNT)
         return id;
     for (unsigned i = 0; i < REGISTER_COUNT; i++)
-        names[i] = panel_texts[i].name;
+        names[i] = takt_panel_texts[i].name;
     message_command_error("there is no register '%s'%s", name,
                           message_did_you_mean("", suggest_word(name, names, REGISTER_COUNT)));
     return REGISTER_COUNT;

@@ -44,15 +44,16 @@ static bool is_number(const struct panel_register *row)
 
 static double in_units(const struct panel_register *row, int64_t counts)
 {
-    return (double)counts / panel_counts_per_unit((enum panel_id)(row - panel_registers));
+    return (double)counts / takt_panel_counts_per_unit((enum panel_id)(row - takt_panel_registers));
 }
 
 /* Empty for texts and whatever has the range of its form. */
 static void write_range(FILE *stream, const struct panel_register *row)
 {
     if (is_number(row) && row->states != PANEL_NEVER && row->form != PANEL_BIT)
-        (void)fprintf(stream, "%.*f ... %.*f", (int)row->decimals, in_units(row, panel_least(row)),
-                      (int)row->decimals, in_units(row, panel_most(row)));
+        (void)fprintf(stream, "%.*f ... %.*f", (int)row->decimals,
+                      in_units(row, takt_panel_least(row)), (int)row->decimals,
+                      in_units(row, panel_most(row)));
 }
 
 static void write_address(FILE *stream, const struct panel_register *row)
@@ -84,8 +85,8 @@ static void write_markdown_table(FILE *stream, enum modbus_table table, const ch
                   "|---|---|---|---|---|---|---|\n",
                   title);
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        if (panel_registers[i].table == table)
-            write_markdown_row(stream, &panel_registers[i]);
+        if (takt_panel_registers[i].table == table)
+            write_markdown_row(stream, &takt_panel_registers[i]);
     }
 }
 
@@ -121,11 +122,12 @@ static void write_quoted(FILE *stream, const char *text)
 
 static void write_csv_row(FILE *stream, const struct panel_register *row)
 {
-    (void)fprintf(
-        stream, "%s,%u,%u,%s,%s,%s,%.*g,%" PRId64 ",%" PRId64 ",", table_names[row->table],
-        (unsigned)row->address, (unsigned)row->words, panel_text(row)->name,
-        row->form == PANEL_S32 ? "32 bits signed" : form_names[row->form], panel_text(row)->unit, 6,
-        in_units(row, 1), (int64_t)panel_least(row), is_number(row) ? (int64_t)panel_most(row) : 0);
+    (void)fprintf(stream, "%s,%u,%u,%s,%s,%s,%.*g,%" PRId64 ",%" PRId64 ",",
+                  table_names[row->table], (unsigned)row->address, (unsigned)row->words,
+                  panel_text(row)->name,
+                  row->form == PANEL_S32 ? "32 bits signed" : form_names[row->form],
+                  panel_text(row)->unit, 6, in_units(row, 1), (int64_t)takt_panel_least(row),
+                  is_number(row) ? (int64_t)panel_most(row) : 0);
     write_states(stream, row->states, ";");
     (void)fputc(',', stream);
     write_quoted(stream, panel_text(row)->meaning);
@@ -138,5 +140,5 @@ void panel_table_write_csv(FILE *stream)
                 "meaning\n",
                 stream);
     for (unsigned i = 0; i < REGISTER_COUNT; i++)
-        write_csv_row(stream, &panel_registers[i]);
+        write_csv_row(stream, &takt_panel_registers[i]);
 }

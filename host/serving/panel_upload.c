@@ -25,7 +25,7 @@
 static bool begin(struct panel_line *line, const struct text *text, enum panel_upload_kind kind,
                   enum panel_upload_command command)
 {
-    const uint32_t crc = crc32_add(CRC32_START, text->bytes, text->length);
+    const uint32_t crc = takt_crc32_add(CRC32_START, text->bytes, text->length);
 
     return panel_line_set(line, REGISTER_UPLOAD_KIND, kind) &&
            panel_line_set(line, REGISTER_UPLOAD_SIZE, (int64_t)text->length) &&
@@ -46,11 +46,11 @@ static bool send_chunk(struct panel_line *line, const struct text *text, uint32_
     const size_t left = text->length - offset;
     const size_t length = left < PANEL_CHUNK_MAX ? left : PANEL_CHUNK_MAX;
     uint16_t word[CHUNK_WORDS] = {(uint16_t)(offset >> 16), (uint16_t)offset, (uint16_t)length,
-                                  crc16(bytes, length)};
+                                  takt_crc16(bytes, length)};
 
     pack_bytes(word + 4, bytes, length);
     if (client_write(&line->client, CLIENT_HOLDINGS,
-                     panel_registers[REGISTER_UPLOAD_OFFSET].address, CHUNK_WORDS, word))
+                     takt_panel_registers[REGISTER_UPLOAD_OFFSET].address, CHUNK_WORDS, word))
         return true;
     panel_line_report(line, REGISTER_UPLOAD_CHECK, "written");
     return false;

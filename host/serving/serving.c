@@ -57,9 +57,9 @@ static void open_service(struct serving *s)
 {
     const struct service_config config = {
         .machine = &s->session.setup.machine,
-        .can = field_get_port(&s->field),
+        .can = drive_network_get_port(&s->network),
         .dcf = s->session.configurations.dcf,
-        .step = field_get_step_port(&s->field),
+        .step = drive_network_get_step_port(&s->network),
         .tools = s->session.tools.tools,
         .tools_count = s->session.tools.table.count,
         .reader = &s->reader,
@@ -67,40 +67,40 @@ static void open_service(struct serving *s)
         .correction = s->session.correction,
         .shape = shaper_prepare(&s->session.setup, &s->shape),
         .programs = {program_store_read, program_store_adopt, &s->store},
-        .plans = plan_queue_get_plans(&s->plan),
+        .plans = takt_plan_queue_get_plans(&s->plan),
         .lines = serving_console_get_lines(s),
         .exact_path = s->session.options->exact_path,
     };
 
-    plan_queue_init(&s->plan, &s->service);
-    service_init(&s->service, &config);
-    field_watch_drives(&s->field, controller_get_drives(&s->service.controller));
+    takt_plan_queue_init(&s->plan, &s->service);
+    takt_service_init(&s->service, &config);
+    drive_network_watch_drives(&s->network, takt_controller_get_drives(&s->service.controller));
     message_controller_warning(&s->service.controller);
     if (s->store.program != NULL)
-        service_set_program(&s->service, (uint32_t)s->store.size,
-                            crc32_add(CRC32_START, s->store.program, s->store.size));
-    service_set_start_line(&s->service, s->session.options->from_line);
+        takt_service_set_program(&s->service, (uint32_t)s->store.size,
+                                 takt_crc32_add(CRC32_START, s->store.program, s->store.size));
+    takt_service_set_start_line(&s->service, s->session.options->from_line);
     serving_state_restore(&s->state, &s->service);
     s->has_service = true;
 }
 
-static enum command_status open_field(struct serving *s)
+static enum command_status open_network(struct serving *s)
 {
     const struct options *options = s->session.options;
-    const struct field_options field = {.bus = options->bus,
-                                        .drives = options->drives,
-                                        .drive_image = options->drive_image,
-                                        .is_paced = true,
-                                        .returns = true};
-    enum command_status status = field_check_options(&field)
-                                     ? field_open(&s->field, &s->session.setup, &field)
+    const struct drive_network_options network = {.bus = options->bus,
+                                                  .drives = options->drives,
+                                                  .drive_image = options->drive_image,
+                                                  .is_paced = true,
+                                                  .returns = true};
+    enum command_status status = drive_network_check_options(&network)
+                                     ? drive_network_open(&s->network, &s->session.setup, &network)
                                      : STATUS_INPUT;
 
     s->has_field = status == STATUS_DONE;
     if (status == STATUS_DONE && !bus_log_open(&s->bus_log, options->bus_log))
         status = STATUS_ENVIRONMENT;
     if (status == STATUS_DONE)
-        bus_log_observe_field(&s->bus_log, &s->field);
+        bus_log_observe_network(&s->bus_log, &s->network);
     return status;
 }
 
@@ -120,7 +120,7 @@ static enum command_status open_server(struct serving *s)
     const struct panel_config panel = {
         .port = exchange_get_port(&s->exchange),
         .store = program_store_get_staging(&s->store),
-        .plans = plan_queue_get_store(&s->plan),
+        .plans = takt_plan_queue_get_store(&s->plan),
         .password = s->session.setup.panel.password,
     };
     struct server_config config = {.host = panel_host_get(&s->panel)};
@@ -130,7 +130,7 @@ static enum command_status open_server(struct serving *s)
     s->has_exchange = exchange_open(&s->exchange);
     if (!serving_options_read(&s->options, &s->session, &config))
         return STATUS_INPUT;
-    service_look(&s->service, exchange_next_snapshot(&s->exchange));
+    takt_service_look(&s->service, exchange_next_snapshot(&s->exchange));
     exchange_publish(&s->exchange);
     s->has_server = s->has_exchange;
     if (s->has_server && server_open(&s->server, &config, &problem))
@@ -148,7 +148,7 @@ enum command_status serving_open(struct serving *s, const struct options *option
     if (status == STATUS_DONE)
         status = open_store(s);
     if (status == STATUS_DONE)
-        status = open_field(s);
+        status = open_network(s);
     if (status == STATUS_DONE)
         status = open_spindle(s);
     if (status != STATUS_DONE)
@@ -175,17 +175,17 @@ void serving_close(struct serving *s)
     serving_spindle_close(&s->spindle);
     (void)bus_log_close(&s->bus_log);
     if (s->has_field)
-        field_close(&s->field);
+        drive_network_close(&s->network);
     program_store_close(&s->store);
     session_close(&s->session);
 }
 
 static void step_spindle(struct serving *s)
 {
-    if (service_take_spindle_reset(&s->service))
+    if (takt_service_take_spindle_reset(&s->service))
         serving_spindle_reset(&s->spindle);
     s->inputs.spindle =
-        serving_spindle_cycle(&s->spindle, service_get_outputs(&s->service).spindle_speed_rpm,
+        serving_spindle_cycle(&s->spindle, takt_service_get_outputs(&s->service).spindle_speed_rpm,
                               cutting_feed_mm_s(&s->service.controller));
 }
 
@@ -193,21 +193,21 @@ static void update_health(struct serving *s)
 {
     const struct cycle_cost *cost = &s->cost;
     const struct service_health health = {
-        .bus_load_percent = field_get_highest_load_percent(&s->field),
+        .bus_load_percent = drive_network_get_highest_load_percent(&s->network),
         .cycle_min_ns = (uint32_t)cost->min_ns,
         .cycle_mean_ns = (uint32_t)(cost->sum_ns / cost->count),
         .cycle_max_ns = (uint32_t)cost->max_ns,
-        .overruns = (uint32_t)s->field.pace.overruns,
+        .overruns = (uint32_t)s->network.pace.overruns,
     };
 
-    service_set_health(&s->service, &health);
+    takt_service_set_health(&s->service, &health);
 }
 
 static void control(struct serving *s)
 {
     const uint64_t start_ns = stopwatch_now_ns();
 
-    service_cycle(&s->service, &s->inputs);
+    takt_service_cycle(&s->service, &s->inputs);
     cycle_cost_add(&s->cost, stopwatch_now_ns() - start_ns);
     if (s->cycles++ % HEALTH_CYCLES == 0)
         update_health(s);
@@ -217,14 +217,14 @@ static void control(struct serving *s)
 static void tell_drives(struct serving *s)
 {
     if (!s->has_told_drives)
-        s->has_told_drives = drives_table_tell(controller_get_drives(&s->service.controller),
+        s->has_told_drives = drives_table_tell(takt_controller_get_drives(&s->service.controller),
                                                s->session.options->quiet);
 }
 
 /* Once it ends nothing is begun any more. */
 static enum panel_verdict give_order(struct serving *s, const struct panel_order *order)
 {
-    return s->ending.way == ENDING_NOT ? service_order(&s->service, order) : PANEL_WRONG_STATE;
+    return s->ending.way == ENDING_NOT ? takt_service_order(&s->service, order) : PANEL_WRONG_STATE;
 }
 
 /* An order is answered when a snapshot shows what came of it. */
@@ -236,12 +236,12 @@ static void serve_cycle(struct serving *s)
     if (order != NULL)
         verdict = give_order(s, order);
     if (exchange_take_alive(&s->exchange))
-        service_alive(&s->service);
-    service_background(&s->service);
+        takt_service_alive(&s->service);
+    takt_service_background(&s->service);
     control(s);
     step_spindle(s);
     tell_drives(s);
-    service_look(&s->service, exchange_next_snapshot(&s->exchange));
+    takt_service_look(&s->service, exchange_next_snapshot(&s->exchange));
     exchange_publish(&s->exchange);
     serving_page_cycle(s);
     if (order != NULL)
@@ -262,7 +262,7 @@ static void look_for_end(struct serving *s)
 static bool has_ended(struct serving *s)
 {
     if (s->ending.way == ENDING_NOT ||
-        !(field_is_lost(&s->field) || ending_is_over(&s->ending, &s->service.controller)))
+        !(drive_network_is_lost(&s->network) || ending_is_over(&s->ending, &s->service.controller)))
         return false;
     return serving_spindle_stop(&s->spindle);
 }
@@ -287,9 +287,9 @@ enum command_status serving_run(struct serving *s)
         serve_cycle(s);
         bus_log_keep(&s->bus_log);
         serving_state_keep(&s->state, &s->service, link_clock_ns());
-        (void)field_end_cycle(&s->field);
-        if (field_is_lost(&s->field))
-            service_lose_bus(&s->service, field_get_lost_bus(&s->field));
+        (void)drive_network_end_cycle(&s->network);
+        if (drive_network_is_lost(&s->network))
+            takt_service_lose_bus(&s->service, drive_network_get_lost_bus(&s->network));
         look_for_end(s);
     }
     return how_it_ended(s);

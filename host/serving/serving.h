@@ -1,8 +1,8 @@
 /*
  * `takt serve` at work: the controller as a service, paced by the wall clock, on its bus, with spindle and panel.
  *
- *     panel's thread  --- orders --->  exchange  --->  service_order      control thread
- *                     <-- snapshots -            <---  service_cycle  ->  field (bus, drives)
+ *     panel's thread  --- orders --->  exchange  --->  takt_service_order      control thread
+ *                     <-- snapshots -            <---  takt_service_cycle  ->  field (bus, drives)
  *                                                                     ->  spindle
  */
 #ifndef TAKT_HOST_SERVING_H
@@ -23,8 +23,8 @@
 #include "session/session.h"
 #include "simulation/bus_log.h"
 #include "simulation/cycle_cost.h"
+#include "simulation/drive_network.h"
 #include "simulation/ending.h"
-#include "simulation/field.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -33,7 +33,7 @@
 struct serving {
     struct session session;
     struct serving_options options;
-    struct field field;
+    struct drive_network network;
     struct service service;
     struct controller_reader reader; /* of the service */
     struct shape shape;              /* likewise, if the machine has a shaper */

@@ -14,21 +14,21 @@ static void open_lines(void *context, struct source *source)
 {
     struct serving *s = context;
 
-    lines_open(&s->console.server.lines, source);
+    takt_lines_open(&s->console.server.lines, source);
 }
 
 static void refuse_line(void *context, const struct diagnostic *why)
 {
     struct serving *s = context;
 
-    lines_refuse(&s->console.server.lines, (uint8_t)console_error_of(why->code), why);
+    takt_lines_refuse(&s->console.server.lines, (uint8_t)takt_console_error_of(why->code), why);
 }
 
 static void end_lines(void *context, enum takt_error why)
 {
     struct serving *s = context;
 
-    lines_end(&s->console.server.lines, why == TAKT_OK ? CONSOLE_OK : CONSOLE_LOCKED, why);
+    takt_lines_end(&s->console.server.lines, why == TAKT_OK ? CONSOLE_OK : CONSOLE_LOCKED, why);
 }
 
 struct service_lines serving_console_get_lines(struct serving *s)
@@ -80,7 +80,7 @@ static void answer(void *context)
 {
     struct question *q = context;
 
-    service_tell(q->service, q->fact, q->value);
+    takt_service_tell(q->service, q->fact, q->value);
 }
 
 static bool tell(void *context, enum console_fact fact, double value[AXIS_COUNT])
@@ -126,10 +126,10 @@ static void begin_check(struct serving *s)
     const struct source source = {.read = read_line, .context = c};
     struct program_config config;
 
-    controller_program_config(&controller, &config);
+    takt_controller_program_config(&controller, &config);
     config.waits = false;
-    program_open(&c->program, &config, &source);
-    offset_open(&c->offset, &config);
+    takt_program_open(&c->program, &config, &source);
+    takt_cutter_compensation_open(&c->offset, &config);
 }
 
 /* TAKT_OK: the line is right, or it ends the program, and the next one begins another. */
@@ -142,7 +142,7 @@ static enum takt_error read_moves(struct serving *s)
     struct move move;
 
     do {
-        result = offset_next(&c->offset, &c->program, &move, &diagnostic);
+        result = takt_cutter_compensation_next(&c->offset, &c->program, &move, &diagnostic);
         if (result == PROGRAM_ERROR)
             error = diagnostic.code;
     } while (result == PROGRAM_MOVE || result == PROGRAM_ERROR);

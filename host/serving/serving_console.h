@@ -5,7 +5,7 @@
 #define TAKT_HOST_SERVING_CONSOLE_H
 
 #include "cli/status.h"
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "program/program.h"
 #include "serve/console_server.h"
 #include "service/service.h"
@@ -17,7 +17,7 @@ struct serving;
 /* A program that is read and does nothing ($C). */
 struct serving_check {
     struct program program;
-    struct offset offset;
+    struct cutter_compensation offset;
     struct parameters parameters; /* as they were when it began */
     struct source_text text;      /* the line being read */
     bool has_line;

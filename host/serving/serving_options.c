@@ -58,7 +58,7 @@ bool serving_options_unit(double given, uint8_t *unit)
     *unit = 1;
     if (given == 0)
         return true;
-    if (given > MODBUS_RTU_UNIT_MAX || given != maths_floor(given)) {
+    if (given > MODBUS_RTU_UNIT_MAX || given != takt_maths_floor(given)) {
         message_command_error("--unit %g: a whole number from 1 to %d is expected", given,
                               MODBUS_RTU_UNIT_MAX);
         return false;
@@ -140,7 +140,7 @@ static bool open_serial(struct serving_options *options, const char *given,
         return false;
     }
     config->serial = serial_line_open(&options->serial);
-    config->serial_gap_us = modbus_rtu_gap_us(options->serial.bauds, SERIAL_BITS);
+    config->serial_gap_us = takt_modbus_rtu_gap_us(options->serial.bauds, SERIAL_BITS);
     if (config->serial < 0)
         message_command_error("%s: %s", options->serial.path, strerror(errno));
     return config->serial >= 0;

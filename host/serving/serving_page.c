@@ -4,8 +4,8 @@
 #include "base/maths.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "drives/virtual_drives.h"
-#include "offset/offset.h"
 #include "serving/serving.h"
 #include "simulation/inject_bus.h"
 
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Chords of a curve that is drawn: about so long, so many at least and at most. */
+/* Chords of a curve that is drawn: about this long, this many at least and at most. */
 #define CHORD_MM   0.5
 #define CHORDS_MIN 8
 #define CHORDS_MAX 96
@@ -48,17 +48,17 @@ static void name_drive(struct page_drive *drive, unsigned bus, const struct mach
     }
 }
 
-static void set_drives(struct page_setup *setup, const struct field *field,
+static void set_drives(struct page_setup *setup, const struct drive_network *network,
                        const struct machine *machine)
 {
-    if (field->is_outside)
+    if (network->is_outside)
         return;
-    for (unsigned i = 0; i < field->drives.count && i < PAGE_DRIVES_MAX; i++) {
+    for (unsigned i = 0; i < network->drives.count && i < PAGE_DRIVES_MAX; i++) {
         struct page_drive *drive = &setup->drive[setup->drives++];
 
-        drive->node = field->drives.drive[i].servo.config.node;
-        drive->dictionary = field->drives.drive[i].servo.dictionary;
-        name_drive(drive, field->drives.drive[i].bus, machine);
+        drive->node = network->drives.drive[i].servo.config.node;
+        drive->dictionary = network->drives.drive[i].servo.dictionary;
+        name_drive(drive, network->drives.drive[i].bus, machine);
     }
 }
 
@@ -91,7 +91,7 @@ static bool get_program(void *context, const char **text, size_t *size)
 
 struct drawing {
     struct program program;
-    struct offset offset;
+    struct cutter_compensation offset;
     struct source_text text;
     struct tool_table tools;
 };
@@ -102,14 +102,14 @@ static bool draw_move(struct page_path *path, const struct move *move, const str
     struct curve curve;
     unsigned chords = 1;
 
-    if (!move_curve(move, at, &curve))
+    if (!takt_move_curve(move, at, &curve))
         return true;
     if (curve.kind != CURVE_LINE)
         chords = (unsigned)maths_clamp(curve.length_mm / CHORD_MM, CHORDS_MIN, CHORDS_MAX);
     for (unsigned i = 1; i <= chords; i++) {
         struct point point;
 
-        curve_point(&curve, curve.length_mm * (double)i / (double)chords, &point);
+        takt_curve_point(&curve, curve.length_mm * (double)i / (double)chords, &point);
         if (!page_path_add(path, &point, move->line, move->kind == MOVE_RAPID))
             return false;
     }
@@ -125,7 +125,8 @@ static void draw_moves(struct drawing *d, const struct program_config *config,
     struct move move;
 
     (void)page_path_add(path, &at, 0, true);
-    while ((result = offset_next(&d->offset, &d->program, &move, &diagnostic)) == PROGRAM_MOVE) {
+    while ((result = takt_cutter_compensation_next(&d->offset, &d->program, &move, &diagnostic)) ==
+           PROGRAM_MOVE) {
         if (!move_is_motion(&move))
             continue;
         if (!draw_move(path, &move, &at))
@@ -133,7 +134,7 @@ static void draw_moves(struct drawing *d, const struct program_config *config,
         at = move.end;
     }
     if (result == PROGRAM_ERROR)
-        (void)diagnostic_text(&diagnostic, path->problem);
+        (void)takt_diagnostic_text(&diagnostic, path->problem);
 }
 
 /* In a thread of its own, on copies of all that the control thread changes. */
@@ -152,12 +153,12 @@ static void draw(void *context, const struct page_source *page, struct page_path
                                                  .tools = &d->tools,
                                                  .parameters = &parameters,
                                                  .exact_path = s->session.options->exact_path};
-    controller_program_config(&controller, &config);
+    takt_controller_program_config(&controller, &config);
     config.waits = false;
     config.repeats_max = OPTIONS_LINES_MAX;
-    source_open_text(&source, &d->text, page->text, page->size);
-    program_open(&d->program, &config, &source);
-    offset_open(&d->offset, &config);
+    takt_source_open_text(&source, &d->text, page->text, page->size);
+    takt_program_open(&d->program, &config, &source);
+    takt_cutter_compensation_open(&d->offset, &config);
     draw_moves(d, &config, path);
     free(d);
 }
@@ -174,14 +175,14 @@ static void read_tables(const struct serving *s, struct page_job *job)
         memcpy(job->tools, config->tools, job->tools_count * sizeof *job->tools);
 }
 
-static void read_responses(const struct field *field, struct page_bus *shown)
+static void read_responses(const struct drive_network *network, struct page_bus *shown)
 {
     shown->responses = 0;
     for (unsigned id = 0; id < BUS_ID_COUNT && shown->responses < PAGE_RESPONSES_MAX; id++) {
         uint32_t longest_ns = 0;
 
-        for (unsigned i = 0; i < field->buses; i++) {
-            const uint32_t own_ns = bus_get_response_max_ns(&field->bus[i], id);
+        for (unsigned i = 0; i < network->buses; i++) {
+            const uint32_t own_ns = bus_get_response_max_ns(&network->bus[i], id);
 
             longest_ns = own_ns > longest_ns ? own_ns : longest_ns;
         }
@@ -190,21 +191,21 @@ static void read_responses(const struct field *field, struct page_bus *shown)
     }
 }
 
-/* Of several buses: their frames together, the highest load, the longest response. */
+/* Figures of several buses: their frames together, the highest load, the longest response. */
 static void read_bus(const struct serving *s, struct page_bus *shown)
 {
-    const struct inject_clock *clock = virtual_drives_get_clock(&s->field.drives);
+    const struct inject_clock *clock = virtual_drives_get_clock(&s->network.drives);
 
-    shown->load_percent = field_get_highest_load_percent(&s->field);
-    for (unsigned i = 0; i < s->field.buses; i++) {
-        const struct bus_counts *counts = &s->field.bus[i].counts;
+    shown->load_percent = drive_network_get_highest_load_percent(&s->network);
+    for (unsigned i = 0; i < s->network.buses; i++) {
+        const struct bus_counts *counts = &s->network.bus[i].counts;
 
         shown->frames += counts->frames;
         shown->error_frames += counts->error_frames;
         shown->dropped += counts->dropped;
         shown->refused += counts->refused + counts->receive_lost;
     }
-    read_responses(&s->field, shown);
+    read_responses(&s->network, shown);
     shown->faults = s->page.faults.count;
     for (unsigned i = 0; i < shown->faults; i++)
         shown->fault[i] = (struct page_fault){s->page.faults.fault[i],
@@ -213,14 +214,14 @@ static void read_bus(const struct serving *s, struct page_bus *shown)
 
 static void read_objects(struct serving *s, struct page_job *job)
 {
-    struct virtual_drive *drive = &s->field.drives.drive[job->drive];
+    struct virtual_drive *drive = &s->network.drives.drive[job->drive];
     const struct dictionary *dictionary = drive->servo.dictionary;
     struct page_values *values = &job->values;
 
     values->count = dictionary->count < PAGE_OBJECTS_MAX ? dictionary->count : PAGE_OBJECTS_MAX;
     for (unsigned i = 0; i < values->count; i++) {
         const struct object_row *row = &dictionary->row[i];
-        const unsigned bytes = object_type_bytes((enum object_type)row->type);
+        const unsigned bytes = takt_object_type_bytes((enum object_type)row->type);
 
         values->is_there[i] =
             bytes > 0 && row->access != OBJECT_WO &&
@@ -231,25 +232,25 @@ static void read_objects(struct serving *s, struct page_job *job)
 
 static void write_object(struct serving *s, struct page_job *job)
 {
-    if (!virtual_drive_write_object(&s->field.drives.drive[job->drive], job->object, job->value))
+    if (!virtual_drive_write_object(&s->network.drives.drive[job->drive], job->object, job->value))
         (void)snprintf(job->problem, sizeof job->problem, "the drive does not take it");
 }
 
 /* Those of drives are found in the script; those of the bus are added to it. */
 static bool begin_fault(struct serving *s, const struct inject_fault *fault)
 {
-    struct virtual_drives *drives = &s->field.drives;
+    struct virtual_drives *drives = &s->network.drives;
     uint8_t nodes[VIRTUAL_DRIVES_MAX];
     struct inject one = {.count = 1, .fault = {*fault}};
 
-    if (fault->bus >= s->field.buses)
+    if (fault->bus >= s->network.buses)
         return false;
     s->page.faults.fault[s->page.faults.count++] = *fault;
     if (!inject_is_of_bus(fault->kind))
         return true;
     const unsigned count = virtual_drives_on_bus(drives, fault->bus, nodes);
 
-    return inject_bus_add(&s->field.bus[fault->bus], fault->bus, &one, INJECT_POWER, 0, nodes,
+    return inject_bus_add(&s->network.bus[fault->bus], fault->bus, &one, INJECT_POWER, 0, nodes,
                           count);
 }
 
@@ -257,7 +258,7 @@ static void add_fault(struct serving *s, struct page_job *job)
 {
     struct inject_fault fault = job->fault;
 
-    fault.after_ns += virtual_drives_get_clock(&s->field.drives)->now_ns;
+    fault.after_ns += virtual_drives_get_clock(&s->network.drives)->now_ns;
     if (s->page.faults.count == INJECT_FAULTS_MAX || !begin_fault(s, &fault))
         (void)snprintf(job->problem, sizeof job->problem,
                        "no more than %d faults between two starts", INJECT_FAULTS_MAX);
@@ -266,7 +267,7 @@ static void add_fault(struct serving *s, struct page_job *job)
 /* What has happened has happened; what lasts is over. */
 static void end_faults(struct serving *s)
 {
-    const uint64_t now_ns = virtual_drives_get_clock(&s->field.drives)->now_ns;
+    const uint64_t now_ns = virtual_drives_get_clock(&s->network.drives)->now_ns;
 
     for (unsigned i = 0; i < s->page.faults.count; i++) {
         struct inject_fault *fault = &s->page.faults.fault[i];
@@ -275,8 +276,8 @@ static void end_faults(struct serving *s)
             fault->for_ns > now_ns - fault->after_ns)
             fault->for_ns = now_ns - fault->after_ns;
     }
-    for (unsigned i = 0; i < s->field.buses; i++)
-        bus_end_faults(&s->field.bus[i]);
+    for (unsigned i = 0; i < s->network.buses; i++)
+        bus_end_faults(&s->network.bus[i]);
 }
 
 static void do_job(struct serving *s, struct page_job *job)
@@ -310,7 +311,7 @@ static void put_cycle(struct serving *s)
     struct page_cycle cycle = {.number = service->cycles, .set = service->sent[0]};
     struct point actual;
 
-    controller_get_actual(&service->controller, &actual);
+    takt_controller_get_actual(&service->controller, &actual);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         cycle.following.at[i] = service->sent[DRIVES_LATENCY_CYCLES - 1].at[i] - actual.at[i];
     page_link_put(&s->page.link, &cycle);
@@ -356,9 +357,9 @@ enum command_status serving_page_open(struct serving *s)
     if (config.address == NULL)
         return STATUS_DONE;
     serving_page_set_up(&s->page.setup, &s->session.setup.machine);
-    set_drives(&s->page.setup, &s->field, &s->session.setup.machine);
-    if (!s->field.is_outside)
-        virtual_drives_inject(&s->field.drives, &s->page.faults);
+    set_drives(&s->page.setup, &s->network, &s->session.setup.machine);
+    if (!s->network.is_outside)
+        virtual_drives_inject(&s->network.drives, &s->page.faults);
     s->page.server = page_server_open(&config, &problem);
     return s->page.server != NULL ? STATUS_DONE : has_failed(s, problem);
 }

@@ -27,10 +27,10 @@ static bool set_place(struct serving_spindle *s, const char *where, struct clien
 }
 
 /* One pole pair: frequency and speed are those of a two-pole motor, as fast spindles have. */
-static void open_inverter(struct serving_spindle *s, const struct machine_setup *setup)
+static void open_vfd(struct serving_spindle *s, const struct machine_setup *setup)
 {
     const struct virtual_spindle_config spindle = machine_setup_get_spindle(setup);
-    const struct inverter_config config = {
+    const struct vfd_config config = {
         .cycle_us = setup->machine.cycle_us,
         .pole_pairs = 1.0,
         .max_hz = spindle.max_rpm / 60.0,
@@ -39,7 +39,7 @@ static void open_inverter(struct serving_spindle *s, const struct machine_setup 
         .silent_after_us = SILENT_AFTER_US,
     };
 
-    inverter_init(&s->inverter, &config);
+    takt_vfd_init(&s->vfd, &config);
 }
 
 static bool open_outside(struct serving_spindle *s, const struct machine_setup *setup,
@@ -52,7 +52,7 @@ static bool open_outside(struct serving_spindle *s, const struct machine_setup *
                               where);
         return false;
     }
-    open_inverter(s, setup);
+    open_vfd(s, setup);
     if (!registers_client_start(&s->client, &config)) {
         message_command_error("--spindle %s: no thread for it", where);
         return false;
@@ -84,7 +84,7 @@ struct spindle_feedback serving_spindle_cycle(struct serving_spindle *s, double 
                                               double cut_mm_s)
 {
     if (s->is_outside)
-        return inverter_cycle(&s->inverter, &s->port, commanded_rpm);
+        return takt_vfd_cycle(&s->vfd, &s->port, commanded_rpm);
     return virtual_spindle_step(
         &s->inside, s->cycle_s, commanded_rpm,
         virtual_spindle_cut_nm(&s->inside, cut_mm_s, s->inside.config.cut_depth_mm));
@@ -94,14 +94,14 @@ bool serving_spindle_stop(struct serving_spindle *s)
 {
     if (!s->is_outside)
         return true;
-    inverter_stop(&s->inverter);
-    return inverter_is_stopped(&s->inverter);
+    takt_vfd_stop(&s->vfd);
+    return takt_vfd_is_stopped(&s->vfd);
 }
 
 void serving_spindle_reset(struct serving_spindle *s)
 {
     if (s->is_outside)
-        inverter_reset(&s->inverter);
+        takt_vfd_reset(&s->vfd);
     else
         virtual_spindle_set_trip(&s->inside, VIRTUAL_SPINDLE_GOOD);
 }

@@ -6,9 +6,9 @@
 
 #include "client/registers_client.h"
 #include "config/machine_setup.h"
-#include "inverter/inverter.h"
 #include "serve/serial_line.h"
 #include "spindle/virtual_spindle.h"
+#include "vfd/vfd.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -18,7 +18,7 @@ struct serving_spindle {
     bool is_outside;
     double cycle_s;
     struct virtual_spindle inside;
-    struct inverter inverter;
+    struct vfd vfd;
     struct registers_client client;
     struct registers_port port;
     struct serial_settings serial;

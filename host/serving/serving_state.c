@@ -199,26 +199,26 @@ static void take_setup(const struct serving_state *st, struct correction *correc
     settings_setup(settings, of_file);
     for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
         same = same && st->kept.setup[CORRECTION_SETUP_VALUES + i] == of_file[i];
-        correction_tell_setup(correction, i, st->kept.setup[i]);
+        takt_correction_tell_setup(correction, i, st->kept.setup[i]);
     }
-    if (same && correction_take_setup(correction))
-        correction_settle_setup(correction);
+    if (same && takt_correction_take_setup(correction))
+        takt_correction_settle_setup(correction);
     else
         message_command_warning("--state %s: the machine's set-up of the part is another since; it "
                                 "counts",
                                 st->folder);
-    correction_forget_setup(correction);
+    takt_correction_forget_setup(correction);
 }
 
 void serving_state_restore(const struct serving_state *st, struct service *service)
 {
-    struct correction *correction = controller_get_correction(&service->controller);
+    struct correction *correction = takt_controller_get_correction(&service->controller);
 
     if (!st->is_kept)
         return;
     for (size_t i = 0; i < st->kept.wears; i++)
-        correction_set_wear(correction, st->kept.wear[i].tool, st->kept.wear[i].length_mm,
-                            st->kept.wear[i].time_s);
+        takt_correction_set_wear(correction, st->kept.wear[i].tool, st->kept.wear[i].length_mm,
+                                 st->kept.wear[i].time_s);
     if (st->kept.has_setup)
         take_setup(st, correction, &service->controller.machine.correction);
     offer_line(&st->kept, service);
@@ -229,7 +229,7 @@ enum command_status serving_state_start(struct serving_state *st)
     return !st->is_kept || state_keeper_start(&st->keeper) ? STATUS_DONE : refuse(st, "no thread");
 }
 
-/* Of the tools of the table, in the state's order of use. */
+/* Wear of the tools of the table, in the state's order of use. */
 static void fill_wear(struct state *state, const struct correction *correction)
 {
     state->wears = 0;
@@ -249,13 +249,13 @@ static void fill(const struct serving_state *st, const struct service *service, 
     state->parameters_base = st->parameters_base;
     state->program_size = service->program_size;
     state->program_crc = service->program_crc;
-    state->line = service_get_cut_line(service);
+    state->line = takt_service_get_cut_line(service);
     state->parameters = *service->config.parameters;
     state->tools_count = st->tools_count;
     if (st->tools_count > 0)
         memcpy(state->tools, service->config.tools, st->tools_count * sizeof *state->tools);
     fill_wear(state, &service->controller.correction);
-    correction_get_setup(&service->controller.correction, state->setup);
+    takt_correction_get_setup(&service->controller.correction, state->setup);
     settings_setup(&service->controller.machine.correction, &state->setup[CORRECTION_SETUP_VALUES]);
     state->has_setup = true;
 }

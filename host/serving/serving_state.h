@@ -34,7 +34,7 @@ struct serving_state {
 enum command_status serving_state_open(struct serving_state *state, struct session *session);
 /* Where programs of panels are kept; NULL: nowhere. */
 const char *serving_state_get_program(const struct serving_state *state);
-/* After service_init: what belongs into the service. */
+/* After takt_service_init: what belongs into the service. */
 void serving_state_restore(const struct serving_state *state, struct service *service);
 /* The thread that writes. STATUS_DONE, else after a message. */
 enum command_status serving_state_start(struct serving_state *state);

@@ -21,7 +21,7 @@ static void turn(struct spindle_service *s)
     if (now_ns - s->time_ns > PAST_NS)
         s->time_ns = now_ns - PAST_NS;
     for (; now_ns - s->time_ns >= STEP_NS; s->time_ns += STEP_NS)
-        inverter_registers_step(&s->registers, 1e-9 * STEP_NS);
+        vfd_registers_step(&s->registers, 1e-9 * STEP_NS);
 }
 
 static enum modbus_exception read_map(void *context, enum modbus_table table, uint16_t address,
@@ -69,7 +69,7 @@ static bool open_serial(struct spindle_service *s, const char *where, struct ser
         return false;
     }
     config->serial = serial_line_open(&s->serial);
-    config->serial_gap_us = modbus_rtu_gap_us(s->serial.bauds, SERIAL_BITS);
+    config->serial_gap_us = takt_modbus_rtu_gap_us(s->serial.bauds, SERIAL_BITS);
     if (config->serial < 0)
         message_command_error("%s: %s", s->serial.path, strerror(errno));
     return config->serial >= 0;
@@ -110,8 +110,8 @@ bool spindle_service_start(struct spindle_service *s, const struct machine_setup
     const char *problem = NULL;
 
     memset(s, 0, sizeof *s);
-    inverter_registers_init(&s->registers, &spindle);
-    s->map = inverter_registers_get_map(&s->registers);
+    vfd_registers_init(&s->registers, &spindle);
+    s->map = vfd_registers_get_map(&s->registers);
     s->time_ns = stopwatch_now_ns();
     if (!open_place(s, where, &config))
         return false;

@@ -7,14 +7,14 @@
 #include "config/machine_setup.h"
 #include "serve/serial_line.h"
 #include "serve/server.h"
-#include "spindle/inverter_registers.h"
+#include "spindle/vfd_registers.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 /* It must not be moved once started. Private. */
 struct spindle_service {
-    struct inverter_registers registers; /* the server thread's */
+    struct vfd_registers registers; /* the server thread's */
     struct modbus_map map;
     uint64_t time_ns; /* up to which it has turned */
     char address[MACHINE_SETUP_PATH_MAX + 1];

@@ -221,7 +221,8 @@ void viewing_cycle(struct viewing *v, struct page_link *link)
 
 static uint32_t counts(double value, double per_unit)
 {
-    return (uint32_t)(int64_t)maths_round(maths_clamp(value * per_unit, -INT32_MAX, INT32_MAX));
+    return (uint32_t)(int64_t)takt_maths_round(
+        maths_clamp(value * per_unit, -INT32_MAX, INT32_MAX));
 }
 
 static void look_at_axes(const struct viewing *v, uint32_t *value)
@@ -240,7 +241,7 @@ static void look_at_axes(const struct viewing *v, uint32_t *value)
             value[REGISTER_AXIS_FEED_X + i] =
                 counts((row->set.at[i] - before->set.at[i]) * 60.0 / v->cycle_s, unit);
     }
-    value[REGISTER_AXES] = machine_axes(v->machine);
+    value[REGISTER_AXES] = takt_machine_axes(v->machine);
     value[REGISTER_HOMED] = value[REGISTER_AXES];
 }
 

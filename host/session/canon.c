@@ -32,7 +32,7 @@ static void add_word(struct line *l, char letter, double value)
     const char word[] = {' ', letter, '\0'};
     char number[DECIMAL_TEXT_MAX + 1];
 
-    number[decimal_write(number, value, PLACES)] = '\0';
+    number[takt_decimal_write(number, value, PLACES)] = '\0';
     add_text(l, word);
     add_text(l, number);
 }
@@ -65,7 +65,7 @@ static void add_arc(struct line *l, const struct move *move, const struct point 
     enum axis first;
     enum axis second;
 
-    plane_axes(move->plane, &first, &second);
+    takt_plane_axes(move->plane, &first, &second);
     centre.at[first] = move->centre_mm[0];
     centre.at[second] = move->centre_mm[1];
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
@@ -93,7 +93,7 @@ bool canon_is_rotary(const struct move *move, const struct point *at)
 {
     struct curve curve;
 
-    return move_curve(move, at, &curve) && curve_is_rotary(&curve);
+    return takt_move_curve(move, at, &curve) && takt_curve_is_rotary(&curve);
 }
 
 static void add_feed(struct line *l, const struct move *move, const struct point *at)

@@ -13,10 +13,11 @@ enum command_status canon_write(FILE *stream, const struct session *session)
     struct move move;
 
     session_begin_reading(session, &reading, &config, &source);
-    program_open(&reading.program, &config, &source);
-    offset_open(&reading.offset, &config);
+    takt_program_open(&reading.program, &config, &source);
+    takt_cutter_compensation_open(&reading.offset, &config);
     at = config.start;
-    while (offset_next(&reading.offset, &reading.program, &move, &diagnostic) == PROGRAM_MOVE &&
+    while (takt_cutter_compensation_next(&reading.offset, &reading.program, &move, &diagnostic) ==
+               PROGRAM_MOVE &&
            !interrupt_asked()) {
         char text[CANON_TEXT_MAX];
 

@@ -58,7 +58,7 @@ __attribute__((format(printf, 2, 3))) static void put(const struct convert *c, c
 /* Fixed places, as every controller reads them; at least one behind the point. */
 static void number_of(char text[CONVERT_NUMBER_MAX], double value, unsigned places)
 {
-    size_t length = decimal_write(text, value, places);
+    size_t length = takt_decimal_write(text, value, places);
 
     while (length > 2 && text[length - 1] == '0' && text[length - 2] != '.')
         length--;
@@ -219,13 +219,13 @@ static void put_centre(const struct convert *c, const struct move *m, const enum
 }
 
 /* G2, G3 and, with the base circle's radius, G2.2, G3.2. Inches allow an end that is further off its circle. */
-static const char *bent(struct convert *c, const struct move *m)
+static const char *curved(struct convert *c, const struct move *m)
 {
     const bool clockwise = m->kind == MOVE_ARC_CW || m->kind == MOVE_INVOLUTE_CW;
     enum axis axis[2];
     double radius_mm = 0.0;
 
-    plane_axes(m->plane, &axis[0], &axis[1]);
+    takt_plane_axes(m->plane, &axis[0], &axis[1]);
     const bool inch = move_is_arc(m) && off_circle(c, m, axis, &radius_mm) > OFF_CIRCLE_MM;
 
     put_feed_mode(c, m->feed_rev_mm != 0.0);
@@ -274,7 +274,7 @@ static const char *motion(struct convert *c, const struct move *m)
         return straight(c, m, m->kind == MOVE_RAPID ? "G0" : "G1");
     if (m->kind == MOVE_THREAD)
         return thread(c, m);
-    return m->kind == MOVE_PROBE ? probe(c, m) : bent(c, m);
+    return m->kind == MOVE_PROBE ? probe(c, m) : curved(c, m);
 }
 
 /* ---- what happens in between ---- */

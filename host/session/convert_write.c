@@ -38,10 +38,11 @@ static enum command_status write_moves(const struct session *session, FILE *out,
     struct move move;
 
     session_begin_reading(session, reading, &config, &source);
-    program_open(&reading->program, &config, &source);
-    offset_open(&reading->offset, &config);
+    takt_program_open(&reading->program, &config, &source);
+    takt_cutter_compensation_open(&reading->offset, &config);
     convert_open(&convert, out, dialect, config.axes, &config.start);
-    while (offset_next(&reading->offset, &reading->program, &move, &ignored) == PROGRAM_MOVE &&
+    while (takt_cutter_compensation_next(&reading->offset, &reading->program, &move, &ignored) ==
+               PROGRAM_MOVE &&
            !interrupt_asked()) {
         const char *lacking = convert_move(&convert, &move);
 

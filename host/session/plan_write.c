@@ -18,7 +18,7 @@ struct plan_row {
     unsigned pieces;                          /* of a smoothed curve; 0: the programmed curve */
     double length;                            /* mm or rad */
     double feed_start, feed_cruise, feed_end; /* along the curve, mm/s or rad/s */
-    enum joint_kind end;
+    enum junction_kind end;
     enum governor governor;
     double governed_s; /* time of the longest piece, which it is the governor of */
     double time_s;
@@ -56,7 +56,7 @@ static const char *governor_name(enum governor governor)
     return names[governor];
 }
 
-static const char *end_name(enum joint_kind end)
+static const char *end_name(enum junction_kind end)
 {
     static const char *const names[] = {"passed", "reduced", "stop"};
 
@@ -76,7 +76,7 @@ static double stretch_at(const struct block *block, double part)
 
     if (block->curve.kind != CURVE_SPLINE)
         return 1;
-    curve_tangent(&block->curve, part * block->curve.length_mm, &tangent);
+    takt_curve_tangent(&block->curve, part * block->curve.length_mm, &tangent);
     for (int axis = from; axis < to; axis++)
         square += tangent.at[axis] * tangent.at[axis];
     return maths_sqrt(square);

@@ -28,9 +28,9 @@ static void reserve_for_correction(const struct session *s, const struct point *
 {
     static _Thread_local struct correction correction;
 
-    correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
-                    s->correction, start);
-    controller_reserve_correction(&correction, &s->setup.machine, limits);
+    takt_correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
+                         s->correction, start);
+    takt_controller_reserve_correction(&correction, &s->setup.machine, limits);
 }
 
 static void start_planner(struct planner *p, const struct session *s)
@@ -40,14 +40,14 @@ static void start_planner(struct planner *p, const struct session *s)
     struct source source;
 
     session_begin_reading(s, &p->reading, &config, &source);
-    program_open(&p->reading.program, &config, &source);
-    offset_open(&p->reading.offset, &config);
+    takt_program_open(&p->reading.program, &config, &source);
+    takt_cutter_compensation_open(&p->reading.offset, &config);
     shaper_plan_limits(&s->setup, &limits);
     reserve_for_correction(s, &config.start, &limits);
     p->look_ahead = s->setup.machine.look_ahead_blocks;
     p->cycle_s = limits.cycle_s;
-    path_init(&p->path, &limits, &config.start);
-    motion_init(&p->motion, &p->path, &config.start, false);
+    takt_path_init(&p->path, &limits, &config.start);
+    takt_motion_init(&p->motion, &p->path, &config.start, false);
 }
 
 static_assert(SMOOTH_AHEAD_PIECES == MACHINE_LOOK_AHEAD_MAX,
@@ -58,9 +58,10 @@ static void read_move(struct planner *p)
     struct diagnostic diagnostic;
     struct move move;
 
-    switch (offset_next(&p->reading.offset, &p->reading.program, &move, &diagnostic)) {
+    switch (takt_cutter_compensation_next(&p->reading.offset, &p->reading.program, &move,
+                                          &diagnostic)) {
     case PROGRAM_MOVE:
-        path_push(&p->path, &move);
+        takt_path_push(&p->path, &move);
         break;
     case PROGRAM_WAIT:
         break; /* a plan takes it that a probing move reaches its end, and an input has come */
@@ -68,21 +69,21 @@ static void read_move(struct planner *p)
     case PROGRAM_END:
     case PROGRAM_ERROR:
         p->ended = true;
-        path_finish(&p->path);
+        takt_path_finish(&p->path);
         break;
     }
 }
 
 static void fill_path(struct planner *p)
 {
-    if (motion_wanted(&p->motion) == NULL)
+    if (takt_motion_wanted(&p->motion) == NULL)
         return;
-    path_go_on(&p->path);
-    const uint32_t wanted = path_look_ahead(&p->path, p->look_ahead);
+    takt_path_go_on(&p->path);
+    const uint32_t wanted = takt_path_look_ahead(&p->path, p->look_ahead);
 
-    while (!p->ended && path_has_room(&p->path) && motion_ahead(&p->motion) < wanted)
+    while (!p->ended && takt_path_has_room(&p->path) && takt_motion_ahead(&p->motion) < wanted)
         read_move(p);
-    motion_build(&p->motion);
+    takt_motion_build(&p->motion);
 }
 
 /* A block that never reaches its ceiling is governed by its ramps. */
@@ -90,11 +91,11 @@ static enum governor governor_of(const struct path *path, uint32_t index,
                                  const struct planned_block *planned)
 {
     const struct ceiling_request program = {.feed_ratio = 1, .rapid_ratio = 1};
-    const double feed_mm_s = ceiling_block_feed(path, index, &program);
+    const double feed_mm_s = takt_ceiling_block_feed(path, index, &program);
 
     if (planned->path_feed_mm_s < feed_mm_s * (1 - 1e-6))
         return GOVERNOR_RAMP;
-    return block_governor(planned->block, planned->block->feed_program_mm_s);
+    return takt_block_governor(planned->block, planned->block->feed_program_mm_s);
 }
 
 static double path_feed(const struct planner *p)
@@ -112,7 +113,7 @@ static double passed_at(const struct planner *p, const struct block *block)
     const double now_s = p->cycle_s * (double)p->motion.cycles;
     const double beyond_mm = path_mm(block->start + block->length, p->motion.setpoint);
 
-    if (block->end == JOINT_STOP)
+    if (block->end == JUNCTION_STOP)
         return p->cycle_s * (double)p->cycles_before;
     if (!(feed_mm_s > 0))
         return now_s;
@@ -135,7 +136,7 @@ static void leave(struct planner *p, uint32_t index, double feed_mm_s,
     const double now_s = passed_at(p, block);
 
     p->planned.block = block;
-    p->planned.feed_end_mm_s = block->end == JOINT_STOP ? 0 : feed_mm_s;
+    p->planned.feed_end_mm_s = block->end == JUNCTION_STOP ? 0 : feed_mm_s;
     p->planned.time_s = maths_max(0, now_s - p->entered_s);
     if (block_is_motion(block))
         p->planned.governor = governor_of(&p->path, index, &p->planned);
@@ -149,7 +150,7 @@ static enum motion_result step(struct planner *p, struct cycle_record *record)
 
     fill_path(p);
     p->cycles_before = p->motion.cycles;
-    return motion_cycle(&p->motion, &as_programmed, record);
+    return takt_motion_cycle(&p->motion, &as_programmed, record);
 }
 
 static enum motion_result walk(struct planner *p,
@@ -163,7 +164,7 @@ static enum motion_result walk(struct planner *p,
         result = step(p, &record);
         for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
             totals->stops +=
-                path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JOINT_STOP;
+                path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JUNCTION_STOP;
             leave(p, i, record.feed_mm_s, take, context);
         }
         p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);
@@ -194,7 +195,8 @@ static enum command_status end_planner(const struct session *s, struct planner *
     const bool stalled = result == MOTION_STALLED;
     struct diagnostic why;
 
-    diagnostic_set(&why, TAKT_ERROR_STALLED, motion_stalled_line(&p->motion), 0, "", 0, 0.0);
+    takt_diagnostic_set(&why, TAKT_ERROR_STALLED, takt_motion_stalled_line(&p->motion), 0, "", 0,
+                        0.0);
     if (stalled)
         message_program_error(&s->program, &why);
     free(p);

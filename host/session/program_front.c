@@ -133,7 +133,7 @@ static void add_label(struct labels *labels, const char *name)
 }
 
 /* A program with what belongs to it, as it grows. */
-struct joint {
+struct junction {
     const struct program_front *front;
     struct program_text *text;
     struct dialect_text bytes;
@@ -142,7 +142,7 @@ struct joint {
     bool failed;
 };
 
-static void add_bytes(struct joint *j, const char *bytes, size_t length)
+static void add_bytes(struct junction *j, const char *bytes, size_t length)
 {
     struct dialect_text *t = &j->bytes;
 
@@ -161,7 +161,7 @@ static void add_bytes(struct joint *j, const char *bytes, size_t length)
     t->length += length;
 }
 
-static void note_oword(struct joint *j, const char *name, const char *behind)
+static void note_oword(struct junction *j, const char *name, const char *behind)
 {
     if (line_defines_label(behind))
         add_label(&j->defined, name);
@@ -169,7 +169,7 @@ static void note_oword(struct joint *j, const char *name, const char *behind)
         add_label(&j->called, name);
 }
 
-static void note_line(struct joint *j, const char *bytes, size_t length)
+static void note_line(struct junction *j, const char *bytes, size_t length)
 {
     static _Thread_local struct line l;
     char name[LINE_LABEL_MAX];
@@ -193,8 +193,8 @@ static void note_line(struct joint *j, const char *bytes, size_t length)
     }
 }
 
-/* Of a file that is no program by itself '%' means nothing; a program ends with its second one. */
-static bool take_line(struct joint *j, const char *bytes, size_t length, bool program)
+/* In a file that is no program by itself '%' means nothing; a program ends with its second one. */
+static bool take_line(struct junction *j, const char *bytes, size_t length, bool program)
 {
     const bool percent = length > 0 && bytes[0] == '%';
     const bool counts = length == 0 || bytes[0] != DIALECT_GOES_ON;
@@ -208,7 +208,7 @@ static bool take_line(struct joint *j, const char *bytes, size_t length, bool pr
     return true;
 }
 
-static void take_lines(struct joint *j, const struct dialect_text *text, bool program)
+static void take_lines(struct junction *j, const struct dialect_text *text, bool program)
 {
     const char *at = text->bytes;
     const char *end = text->bytes + text->length;
@@ -225,7 +225,7 @@ static void take_lines(struct joint *j, const struct dialect_text *text, bool pr
 
 /* ---- pieces ---- */
 
-static bool add_piece(struct joint *j, const char *name, struct text *found)
+static bool add_piece(struct junction *j, const char *name, struct text *found)
 {
     struct program_text *text = j->text;
     struct program_piece *grown = realloc(text->piece, (text->pieces + 1) * sizeof *text->piece);
@@ -255,7 +255,7 @@ static void tell_notes(const char *name, enum dialect dialect, const struct dial
 }
 
 /* What has been found, in takt's own language. False after a message. */
-static bool translate(const struct joint *j, const char *name, enum dialect dialect,
+static bool translate(const struct junction *j, const char *name, enum dialect dialect,
                       const struct text *found, struct dialect_text *bytes)
 {
     static _Thread_local struct dialect_result result;
@@ -334,7 +334,7 @@ static bool find_in(const char *folder, const char *label, char *path, size_t si
     return best < ENDINGS && stat(path, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-static bool find_file(const struct joint *j, const char *label, char *path, size_t size)
+static bool find_file(const struct junction *j, const char *label, char *path, size_t size)
 {
     const char *program = j->text->name;
     const char *slash = strrchr(program, '/');
@@ -355,7 +355,7 @@ static bool find_file(const struct joint *j, const char *label, char *path, size
 }
 
 /* The program has ended before what follows; nothing of it is executed on the way. */
-static void end_program(struct joint *j)
+static void end_program(struct junction *j)
 {
     static const char end[] = {DIALECT_GOES_ON, 'M', '2', '\n'};
 
@@ -363,7 +363,7 @@ static void end_program(struct joint *j)
         add_bytes(j, end, sizeof end);
 }
 
-static bool bring_in(struct joint *j, const char *label)
+static bool bring_in(struct junction *j, const char *label)
 {
     char path[4096 + 128];
     struct text found;
@@ -392,7 +392,7 @@ static bool bring_in(struct joint *j, const char *label)
 }
 
 /* Those of the program, then those of what has been brought in. */
-static bool bring_in_all(struct joint *j)
+static bool bring_in_all(struct junction *j)
 {
     for (unsigned i = 0; i < j->called.count; i++) {
         if (!knows(&j->defined, j->called.name[i])) {
@@ -434,7 +434,7 @@ static void tell_dialect(const struct program_front *front, const char *name,
 }
 
 /* The program as its first piece, and everything it calls. */
-static bool join(struct joint *j, enum dialect dialect)
+static bool join(struct junction *j, enum dialect dialect)
 {
     struct text found;
     struct dialect_text bytes;
@@ -454,15 +454,15 @@ static bool join(struct joint *j, enum dialect dialect)
     return good && bring_in_all(j) && !j->failed;
 }
 
-static void free_joint(struct joint *j)
+static void free_junction(struct junction *j)
 {
     dialect_text_free(&j->bytes);
     free(j->defined.name);
     free(j->called.name);
 }
 
-/* The joint takes the place of the text as it was found. */
-static void replace_text(struct joint *j)
+/* The junction takes the place of the text as it was found. */
+static void replace_text(struct junction *j)
 {
     struct program_text *text = j->text;
 
@@ -488,7 +488,7 @@ static void forget_pieces(struct program_text *text)
 
 bool program_front_prepare(const struct program_front *front, struct program_text *text)
 {
-    struct joint j = {.front = front, .text = text};
+    struct junction j = {.front = front, .text = text};
     bool calls;
     const struct dialect_guess guess = guess_text(text, front->codes, &calls);
     const enum dialect dialect = front->dialect == DIALECT_AUTO ? guess.dialect : front->dialect;
@@ -503,7 +503,7 @@ bool program_front_prepare(const struct program_front *front, struct program_tex
         replace_text(&j);
     else if (good)
         forget_pieces(text);
-    free_joint(&j);
+    free_junction(&j);
     return good;
 }
 

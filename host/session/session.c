@@ -37,7 +37,7 @@ static bool open_tables(struct session *s)
 enum command_status session_open_machine(struct session *s, const struct options *options)
 {
     *s = (struct session){.options = options};
-    parameters_clear(&s->parameters.values);
+    takt_parameters_clear(&s->parameters.values);
     return machine_file_load(&s->setup, options) &&
                    configuration_files_load(&s->configurations, &s->setup) && open_tables(s) &&
                    correction_file_load(&s->correction, &s->setup)
@@ -104,7 +104,7 @@ void session_begin_reading(const struct session *s, struct session_reading *read
     };
 
     reading->parameters = s->parameters.values;
-    controller_program_config(&controller, config);
+    takt_controller_program_config(&controller, config);
     config->waits = config->waits && s->runs;
     config->repeats_max = s->options->lines_max > 0 ? s->options->lines_max : OPTIONS_LINES_MAX;
     program_text_read(&s->program, &reading->text, source);
@@ -115,8 +115,8 @@ static void print_warnings(const struct session *s, struct session_reading *read
 {
     struct diagnostic warning;
 
-    while (program_warning(&reading->program, &warning) ||
-           offset_warning(&reading->offset, &warning)) {
+    while (takt_program_warning(&reading->program, &warning) ||
+           takt_cutter_compensation_warning(&reading->offset, &warning)) {
         if (totals->warnings++ < SESSION_WARNINGS_MAX)
             message_program_warning(&s->program, &warning);
     }
@@ -134,10 +134,10 @@ static void count_move(struct session_totals *totals, const struct move *move, s
     if (move->path == PATH_BLEND && move->tolerance_mm > 0 &&
         (totals->tolerance_mm == 0 || move->tolerance_mm < totals->tolerance_mm))
         totals->tolerance_mm = move->tolerance_mm;
-    if (move_curve(move, at, &curve)) {
+    if (takt_move_curve(move, at, &curve)) {
         totals->last = totals->motions;
         totals->curves++;
-        totals->length_mm += curve_is_rotary(&curve) ? 0 : curve.length_mm;
+        totals->length_mm += takt_curve_is_rotary(&curve) ? 0 : curve.length_mm;
     }
     *at = move->end;
 }
@@ -148,13 +148,15 @@ static bool check_move(const struct session *s, struct session_reading *reading,
 {
     struct diagnostic error;
     struct move move;
-    enum program_result result = offset_next(&reading->offset, &reading->program, &move, &error);
+    enum program_result result =
+        takt_cutter_compensation_next(&reading->offset, &reading->program, &move, &error);
 
     print_warnings(s, reading, totals);
     if (result == PROGRAM_MOVE)
         count_move(totals, &move, at);
     if (result == PROGRAM_WAIT && reading->program.question == QUESTION_SETUP) {
-        offset_answer(&reading->offset, &reading->program, &(const struct program_answer){0});
+        takt_cutter_compensation_answer(&reading->offset, &reading->program,
+                                        &(const struct program_answer){0});
         return true;
     }
     totals->is_open = totals->is_open || result == PROGRAM_WAIT;
@@ -170,7 +172,7 @@ static void say_abort(void *listener, const struct program *p)
 {
     const struct program_text *program = *(const struct program_text **)listener;
     char text[COMMENT_TEXT_MAX];
-    const bool abort = p->lexer.comment_length > 0 && comment_read(p, text) == COMMENT_ABORT;
+    const bool abort = p->lexer.comment_length > 0 && takt_comment_read(p, text) == COMMENT_ABORT;
 
     if (abort && (strlen(text) >= DIAGNOSTIC_WORD_MAX || strchr(text, '.') != NULL))
         message_from_program(program, p->lexer.line, text);
@@ -189,8 +191,8 @@ enum command_status session_check(const struct session *s, unsigned errors_max,
     session_begin_reading(s, &reading, &config, &source);
     config.say = say_abort;
     config.listener = &program;
-    program_open(&reading.program, &config, &source);
-    offset_open(&reading.offset, &config);
+    takt_program_open(&reading.program, &config, &source);
+    takt_cutter_compensation_open(&reading.offset, &config);
     at = config.start;
     *totals = (struct session_totals){0};
     while (check_move(s, &reading, errors_max, totals, &at)) {

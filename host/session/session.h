@@ -14,7 +14,7 @@
 #include "config/tool_file.h"
 #include "controller/controller.h"
 #include "correction/tables.h"
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "program/program.h"
 
 #include <stdbool.h>
@@ -49,7 +49,7 @@ void session_close(struct session *s);
 /* One reading of the program: struct program and what belongs to it. It must not be moved once begun. */
 struct session_reading {
     struct program program;
-    struct offset offset;
+    struct cutter_compensation offset;
     struct parameters parameters; /* its own copy, as they were before the program */
     struct program_text_reader text;
 };

@@ -49,7 +49,7 @@ void announcer_say(void *announcer, const struct program *p)
 
     if (p->approach.pending || p->lexer.comment_length == 0)
         return;
-    switch (comment_read(p, text)) {
+    switch (takt_comment_read(p, text)) {
     case COMMENT_MESSAGE:
     case COMMENT_ABORT:
         message_from_program(a->program, p->lexer.line, text);
@@ -83,7 +83,7 @@ void announcer_add_contact(struct announcer *a, const struct parameters *paramet
     if (!a->probe.is_open)
         return;
     for (unsigned i = 0; i < CONTACT_AXES; i++) {
-        const double at = i < AXIS_COUNT ? parameters_get(parameters, PARAMETER_PROBE + i) : 0;
+        const double at = i < AXIS_COUNT ? takt_parameters_get(parameters, PARAMETER_PROBE + i) : 0;
 
         (void)fprintf(a->probe.file.stream, "%s%.6f", i > 0 ? " " : "", at);
     }

@@ -34,10 +34,10 @@ void bus_log_observe_link(struct bus_log *log, struct link *link)
         link_observe(link, &(struct wire_listener){candump_wire, &log->dump});
 }
 
-void bus_log_observe_field(struct bus_log *log, struct field *field)
+void bus_log_observe_network(struct bus_log *log, struct drive_network *network)
 {
     if (log->file != NULL)
-        field_log(field, &log->frames, &log->dump);
+        drive_network_log(network, &log->frames, &log->dump);
 }
 
 void bus_log_keep(struct bus_log *log)

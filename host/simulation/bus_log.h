@@ -7,7 +7,7 @@
 
 #include "bus/candump.h"
 #include "bus/link.h"
-#include "simulation/field.h"
+#include "simulation/drive_network.h"
 #include "simulation/frame_buffer.h"
 
 #include <stdbool.h>
@@ -28,7 +28,7 @@ bool bus_log_open(struct bus_log *log, const char *path);
 
 /* What is logged: one of these. */
 void bus_log_observe_link(struct bus_log *log, struct link *link);
-void bus_log_observe_field(struct bus_log *log, struct field *field);
+void bus_log_observe_network(struct bus_log *log, struct drive_network *network);
 
 /* Once a cycle or a round. */
 void bus_log_keep(struct bus_log *log);

@@ -72,7 +72,7 @@ static void add_states(struct bus_plan *plan, const struct drives *drives, unsig
     const unsigned id = NMT_HEARTBEAT_FUNCTION + NODE_MIN;
 
     add_message(plan, "heartbeat", id, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
-    if (drives_are_guarding(drives, bus)) {
+    if (takt_drives_are_guarding(drives, bus)) {
         add_message(plan, "guarding", id + 1, 0, BUS_PLAN_STATES);
         plan->message[plan->count - 1].is_remote = true;
         add_message(plan, "its answer", id + 2, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
@@ -93,7 +93,7 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const st
                   unsigned bus)
 {
     struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX];
-    unsigned count = drives_get_pdos(drives, bus, pdo);
+    unsigned count = takt_drives_get_pdos(drives, bus, pdo);
 
     memset(plan, 0, sizeof *plan);
     plan->rates = machine_setup_get_rates(machine);
@@ -102,7 +102,7 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const st
     for (unsigned i = 0; i < count; i++)
         add_pdo(plan, &pdo[i]);
     add_errors(plan);
-    if (drives_have_probed(drives)) {
+    if (takt_drives_have_probed(drives)) {
         add_message(plan, "SDO answer", SDO_RESPONSE_FUNCTION + NODE_MIN, CAN_CLASSIC_MAX,
                     BUS_PLAN_SDO);
         add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_CLASSIC_MAX,

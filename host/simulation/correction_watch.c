@@ -45,10 +45,10 @@ static void report_outside(struct correction_watch *w, unsigned outside,
 void correction_watch_add(struct correction_watch *w, struct correction *correction,
                           const struct cycle_record *record, const char *program)
 {
-    w->present = correction_get_present(correction);
+    w->present = takt_correction_get_present(correction);
     if (w->present == 0)
         return;
-    report_outside(w, correction_take_outside(correction), record, program);
+    report_outside(w, takt_correction_take_outside(correction), record, program);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         add_axis(w, i, record->set.at[i] - record->cmd.at[i]);
 }

@@ -66,10 +66,10 @@ void drives_table_set(struct drives_table *table, const struct drives *drives)
 {
     memset(table, 0, sizeof *table);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        table->given_up[i] = drives_get_given_up(drives, (enum axis)i);
+        table->given_up[i] = takt_drives_get_given_up(drives, (enum axis)i);
     for (unsigned bus = 0; bus < CAN_BUSES_MAX && drives_get_state(drives) != DRIVES_STARTING;
          bus++)
-        drives_get_load(drives, bus, &table->load[bus]);
+        takt_drives_get_load(drives, bus, &table->load[bus]);
 }
 
 bool drives_table_has(const struct drives_table *table, enum drives_given_up what)

@@ -11,7 +11,7 @@
 #include <cjson/cJSON.h>
 #include <stdio.h>
 
-/* Of one run. */
+/* What is told of the drives of one run. */
 struct drives_table {
     uint32_t given_up[AXIS_COUNT]; /* bits of enum drives_given_up */
     struct drives_load load[CAN_BUSES_MAX];

@@ -15,7 +15,7 @@ void ending_ask(struct ending *ending, struct controller *c, enum ending_way way
     if (way <= ending->way)
         return;
     ending->way = way;
-    controller_end(c, way == ENDING_AT_ONCE);
+    takt_controller_end(c, way == ENDING_AT_ONCE);
 }
 
 enum ending_way ending_by_signals(void)
@@ -31,10 +31,10 @@ static bool are_switched_on(const struct controller *c)
 {
     uint16_t statusword[AXIS_COUNT];
 
-    drives_get_statuswords(&c->drives, statusword);
+    takt_drives_get_statuswords(&c->drives, statusword);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&c->machine.axis[i]) &&
-            cia402_state(statusword[i]) != CIA402_SWITCHED_ON)
+            takt_cia402_state(statusword[i]) != CIA402_SWITCHED_ON)
             return false;
     }
     return true;
@@ -43,16 +43,16 @@ static bool are_switched_on(const struct controller *c)
 /* Drives that have a fault of their own are left as they are. */
 static bool is_switching(struct ending *ending, struct controller *c)
 {
-    if (!ending->stays_on || drives_get_fault(&c->drives)->code != TAKT_ERROR_ENDED ||
+    if (!ending->stays_on || takt_drives_get_fault(&c->drives)->code != TAKT_ERROR_ENDED ||
         are_switched_on(c) || ending->switching_cycles++ >= SWITCHING_CYCLES_MAX)
         return false;
-    drives_switch_on_at_rest(&c->drives, c->can.port);
+    takt_drives_switch_on_at_rest(&c->drives, c->can.port);
     return true;
 }
 
 bool ending_is_over(struct ending *ending, struct controller *c)
 {
     if (drives_get_state(&c->drives) >= DRIVES_BRAKING)
-        controller_quieten(c);
-    return controller_has_ended(c) && !is_switching(ending, c);
+        takt_controller_quieten(c);
+    return takt_controller_has_ended(c) && !is_switching(ending, c);
 }

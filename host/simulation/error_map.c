@@ -62,7 +62,7 @@ static void add_error(cJSON *list, const struct error_map *m, const struct point
     double um[AXIS_LINEAR_COUNT];
 
     if (corrected) {
-        correction_evaluate(m->correction, at, &move, &k);
+        takt_correction_evaluate(m->correction, at, &move, &k);
         for (unsigned i = 0; i < AXIS_COUNT; i++)
             set.at[i] += k.at[i];
     }

@@ -75,7 +75,7 @@ static void keep_frame(struct lockstep *lockstep, const struct can_frame *frame)
 static unsigned report_of(const struct lockstep *lockstep, uint16_t id)
 {
     if (lockstep->drives != NULL)
-        return drives_get_report(lockstep->drives, lockstep->bus, id);
+        return takt_drives_get_report(lockstep->drives, lockstep->bus, id);
     return node_function(id) == PDO_TPDO1_FUNCTION ? DRIVES_REPORTS_ALL : 0;
 }
 
@@ -89,7 +89,7 @@ static bool take_frame(struct lockstep *lockstep, const struct can_frame *frame)
     keep_frame(lockstep, frame);
     if (drive == NULL)
         return false;
-    if (nmt_read_heartbeat(frame, &node, &state) && state != NMT_OPERATIONAL)
+    if (takt_nmt_read_heartbeat(frame, &node, &state) && state != NMT_OPERATIONAL)
         drive->is_in_step = drive->has_answered = false; /* not before it is started again */
     drive->reported |= (uint8_t)report_of(lockstep, frame->id);
     if (drive->reported != DRIVES_REPORTS_ALL)

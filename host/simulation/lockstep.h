@@ -2,7 +2,7 @@
  * Control cycles on an outside bus, as fast as its drives answer: a cycle ends when the status of
  * every drive has come.
  *
- *     controller_cycle   SYNC, controlwords, targets  --->  drives
+ *     takt_controller_cycle   SYNC, controlwords, targets  --->  drives
  *     lockstep_end_cycle                              <---  statusword and position of every drive
  *
  * So what the controller receives in a cycle does not depend on the speed of either side, and a run

@@ -20,7 +20,7 @@
 static void note_contact(struct simulation *s)
 {
     struct program_answer answer;
-    const uint32_t answers = controller_get_answers(&s->controller, &answer);
+    const uint32_t answers = takt_controller_get_answers(&s->controller, &answer);
 
     if (answers != s->answers && answer.contact)
         announcer_add_contact(&s->announcer, &s->parameters);
@@ -43,7 +43,7 @@ static void start_controller(struct simulation *s, const struct session *session
         .machine = &session->setup.machine,
         .can = can,
         .dcf = session->configurations.dcf,
-        .step = field_get_step_port(&s->field),
+        .step = drive_network_get_step_port(&s->network),
         .tools = &session->tools.table,
         .correction = session->correction,
         .shape = shaper_prepare(&session->setup, &s->shape),
@@ -60,14 +60,14 @@ static void start_controller(struct simulation *s, const struct session *session
     s->parameters = session->parameters.values;
     announcer_init(&s->announcer, &session->program);
     program_text_read(&session->program, &s->text, &config.source);
-    controller_init(&s->controller, &config);
+    takt_controller_init(&s->controller, &config);
     message_controller_warning(&s->controller);
 }
 
 /* The one of this process; with a target, that as well. */
 static enum command_status start_controllers(struct simulation *s, const struct session *session)
 {
-    const struct can_buses can = field_get_port(&s->field);
+    const struct can_buses can = drive_network_get_port(&s->network);
     enum command_status status;
 
     s->has_target = session->options->target != NULL;
@@ -91,14 +91,14 @@ static unsigned list_nodes(const struct machine *machine,
 {
     unsigned count = 0;
 
-    for (unsigned bus = 0; bus < machine_bus_count(machine); bus++) {
+    for (unsigned bus = 0; bus < takt_machine_bus_count(machine); bus++) {
         uint8_t node[MACHINE_NODES_MAX];
-        const unsigned drives = machine_bus_nodes(machine, bus, node);
+        const unsigned drives = takt_machine_bus_nodes(machine, bus, node);
 
         for (unsigned i = 0; i < drives; i++)
             nodes[count++] = INJECT_ADDRESS(bus, node[i]);
     }
-    for (unsigned i = 0; i < machine_io_count(machine); i++)
+    for (unsigned i = 0; i < takt_machine_io_count(machine); i++)
         nodes[count++] = INJECT_ADDRESS(machine->io[i].bus, machine->io[i].node);
     return count;
 }
@@ -125,10 +125,10 @@ static void free_files(struct simulation *s)
 enum command_status simulation_open(const struct session *session, struct simulation **opened)
 {
     const struct options *options = session->options;
-    struct field_options field = {.bus = options->bus,
-                                  .drives = options->drives,
-                                  .drive_image = options->drive_image,
-                                  .is_paced = options->realtime};
+    struct drive_network_options network = {.bus = options->bus,
+                                            .drives = options->drives,
+                                            .drive_image = options->drive_image,
+                                            .is_paced = options->realtime};
     struct simulation *s = calloc(1, sizeof *s);
     struct virtual_spindle_config spindle;
     enum command_status status;
@@ -143,7 +143,7 @@ enum command_status simulation_open(const struct session *session, struct simula
     spindle = machine_setup_get_spindle(&session->setup);
     virtual_spindle_init(&s->spindle, &spindle);
     if (options->inject != NULL)
-        field.script = &s->script;
+        network.script = &s->script;
     status = load_faults(s, session);
     if (status == STATUS_DONE &&
         !(probe_file_load(&s->probe, options->probe) && stock_file_load(&s->stock, options->stock)))
@@ -153,7 +153,7 @@ enum command_status simulation_open(const struct session *session, struct simula
           override_file_load(&s->rapid_override, options->rapid_override, RAPID_PERCENT_MAX)))
         status = STATUS_INPUT;
     if (status == STATUS_DONE)
-        status = field_open(&s->field, &session->setup, &field);
+        status = drive_network_open(&s->network, &session->setup, &network);
     if (status != STATUS_DONE) {
         free_files(s);
         free(s);
@@ -164,12 +164,12 @@ enum command_status simulation_open(const struct session *session, struct simula
         simulation_close(s);
         return status;
     }
-    field_watch_drives(&s->field, controller_get_drives(&s->controller));
-    probe_contact_wire(&s->contact, &s->probe, &session->setup.machine, &s->field.drives);
+    drive_network_watch_drives(&s->network, takt_controller_get_drives(&s->controller));
+    probe_contact_wire(&s->contact, &s->probe, &session->setup.machine, &s->network.drives);
     tool_point_init(&s->tool_point, &session->setup);
     correction_watch_init(&s->correction, s->tool_point.cycle_s);
     s->program = session->program.name;
-    s->tool_point.is_watched = s->tool_point.is_watched && !s->field.is_outside;
+    s->tool_point.is_watched = s->tool_point.is_watched && !s->network.is_outside;
     *opened = s;
     return STATUS_DONE;
 }
@@ -181,7 +181,7 @@ void simulation_close(struct simulation *s)
     if (s->has_target)
         target_close(&s->target);
     announcer_close(&s->announcer);
-    field_close(&s->field);
+    drive_network_close(&s->network);
     free_files(s);
     free(s);
 }
@@ -217,14 +217,14 @@ bool simulation_add_faults(struct simulation *s, const char *name, const char *b
     }
     for (unsigned i = 0; i < added.count; i++)
         s->script.fault[s->script.count++] = added.fault[i];
-    return field_add_faults(&s->field, &s->script, first);
+    return drive_network_add_faults(&s->network, &s->script, first);
 }
 
 static void measured_cycle(struct simulation *s)
 {
     uint64_t start_ns = stopwatch_now_ns();
 
-    controller_cycle(&s->controller, &s->inputs);
+    takt_controller_cycle(&s->controller, &s->inputs);
     cycle_cost_add(&s->cost, stopwatch_now_ns() - start_ns);
 }
 
@@ -235,7 +235,7 @@ static void set_inputs(struct simulation *s)
     const double time_s = cycle_s * (double)(s->cycles - s->begun);
     struct point at;
 
-    controller_get_actual(&s->controller, &at);
+    takt_controller_get_actual(&s->controller, &at);
     s->contact.at = at;
     virtual_probe_set_inputs(&s->probe, time_s, &at, &s->inputs);
     s->inputs.feed_override_percent = override_file_at(&s->feed_override, time_s);
@@ -250,27 +250,29 @@ static void follow_tool_point(struct simulation *s)
 
     if (!t->is_watched)
         return;
-    field_get_axes(&s->field, &s->controller.machine, &at);
-    tool_point_follow(t, &at, (double)s->cycles * t->cycle_s, controller_get_record(&s->controller),
-                      controller_get_block(&s->controller));
+    drive_network_get_axes(&s->network, &s->controller.machine, &at);
+    tool_point_follow(t, &at, (double)s->cycles * t->cycle_s,
+                      takt_controller_get_record(&s->controller),
+                      takt_controller_get_block(&s->controller));
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         s->rise_k[i] = deviation_sensor_k(&t->real);
-        correction_set_rise(controller_get_correction(&s->controller), (enum axis)i, s->rise_k[i]);
+        takt_correction_set_rise(takt_controller_get_correction(&s->controller), (enum axis)i,
+                                 s->rise_k[i]);
     }
 }
 
 static void watch_correction(struct simulation *s)
 {
-    const struct cycle_record *record = controller_get_record(&s->controller);
+    const struct cycle_record *record = takt_controller_get_record(&s->controller);
 
     if (record != NULL)
-        correction_watch_add(&s->correction, controller_get_correction(&s->controller), record,
+        correction_watch_add(&s->correction, takt_controller_get_correction(&s->controller), record,
                              s->program);
 }
 
 static double cut_depth_mm(const struct simulation *s)
 {
-    const struct cycle_record *record = controller_get_record(&s->controller);
+    const struct cycle_record *record = takt_controller_get_record(&s->controller);
 
     if (s->stock.rows == 0 || record == NULL)
         return s->spindle.config.cut_depth_mm;
@@ -286,26 +288,28 @@ static void step_spindle(struct simulation *s)
         virtual_spindle_cut_nm(&s->spindle, cutting_feed_mm_s(&s->controller), cut_depth_mm(s));
 
     s->inputs.spindle = virtual_spindle_step(
-        &s->spindle, cycle_s, controller_get_outputs(&s->controller)->spindle_speed_rpm, cut_nm);
+        &s->spindle, cycle_s, takt_controller_get_outputs(&s->controller)->spindle_speed_rpm,
+        cut_nm);
 }
 
 /* One cycle of the controller, or of both. */
 static bool control(struct simulation *s)
 {
-    controller_background(&s->controller);
+    takt_controller_background(&s->controller);
     set_inputs(s);
     if (s->has_target && !target_begin_cycle(&s->target, &s->inputs, s->rise_k))
         return false;
     if (s->cycles % CYCLE_COST_EVERY == 0)
         measured_cycle(s);
     else
-        controller_cycle(&s->controller, &s->inputs);
+        takt_controller_cycle(&s->controller, &s->inputs);
     return !s->has_target || target_end_cycle(&s->target, &s->controller);
 }
 
 const struct cycle_record *simulation_get_record(const struct simulation *s)
 {
-    return s->has_target ? target_get_record(&s->target) : controller_get_record(&s->controller);
+    return s->has_target ? target_get_record(&s->target)
+                         : takt_controller_get_record(&s->controller);
 }
 
 const struct point *simulation_get_tool(const struct simulation *s)
@@ -316,12 +320,13 @@ const struct point *simulation_get_tool(const struct simulation *s)
 /* Drives that boot, or are switched off, are another matter than operation: other frames come then. */
 static void count_responses(struct simulation *s)
 {
-    if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
+    if (!s->has_begun && takt_controller_get_record(&s->controller) != NULL) {
         s->has_begun = true;
-        field_clear_responses(&s->field);
+        drive_network_clear_responses(&s->network);
     }
-    if (s->has_begun && drives_get_state(controller_get_drives(&s->controller)) != DRIVES_ENABLED)
-        field_end_responses(&s->field);
+    if (s->has_begun &&
+        drives_get_state(takt_controller_get_drives(&s->controller)) != DRIVES_ENABLED)
+        drive_network_end_responses(&s->network);
 }
 
 bool simulation_step(struct simulation *s)
@@ -332,9 +337,9 @@ bool simulation_step(struct simulation *s)
     step_spindle(s);
     count_responses(s);
     s->cycles++;
-    if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
+    if (takt_controller_get_state(&s->controller) == CONTROLLER_STARTING)
         s->begun = s->cycles;
-    if (!field_end_cycle(&s->field))
+    if (!drive_network_end_cycle(&s->network))
         return false;
     follow_tool_point(s);
     watch_correction(s);

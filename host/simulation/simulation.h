@@ -1,7 +1,7 @@
 /*
  * The machine a program runs on, cycle by cycle: firmware, CAN bus and drives.
  *
- *     controller_background, controller_cycle -> frames -> bus -> drives -> motors -> frames -> controller
+ *     takt_controller_background, takt_controller_cycle -> frames -> bus -> drives -> motors -> frames -> controller
  */
 #ifndef TAKT_HOST_SIMULATION_H
 #define TAKT_HOST_SIMULATION_H
@@ -14,7 +14,7 @@
 #include "simulation/announcer.h"
 #include "simulation/correction_watch.h"
 #include "simulation/cycle_cost.h"
-#include "simulation/field.h"
+#include "simulation/drive_network.h"
 #include "simulation/probe_contact.h"
 #include "simulation/tool_point.h"
 #include "spindle/stock.h"
@@ -25,8 +25,8 @@
 #include <stdint.h>
 
 struct simulation {
-    struct field field; /* bus and drives */
-    bool has_begun;     /* the program has had its first cycle */
+    struct drive_network network; /* bus and drives */
+    bool has_begun;               /* the program has had its first cycle */
     struct controller controller;
     struct controller_reader reader; /* of the controller */
     struct shape shape;              /* likewise, if the machine has a shaper */

@@ -39,9 +39,9 @@ enum command_status target_setup_check(const struct session *session)
     else if (has_steps(&session->setup.machine))
         message_command_error("--target: the image drives axes over CAN alone, and this machine "
                               "has step drives");
-    else if (machine_bus_count(&session->setup.machine) > 1)
+    else if (takt_machine_bus_count(&session->setup.machine) > 1)
         message_command_error("--target: the image has one CAN bus, and this machine has %u",
-                              machine_bus_count(&session->setup.machine));
+                              takt_machine_bus_count(&session->setup.machine));
     else if (session->correction != NULL && session->correction->geometry != NULL)
         message_command_error("--target: errors of units (unit_table_..., squareness_urad) are not "
                               "for a board: make a volume table of them with takt calibrate "
@@ -65,11 +65,11 @@ static bool add_table(struct target_table *tables, unsigned *count, struct table
     if (!correction_file_read(table, path, machine))
         return false;
     stored->is_volume = is_volume;
-    stored->size = table_store_size(table);
+    stored->size = takt_table_store_size(table);
     stored->bytes = malloc(stored->size);
     if (stored->bytes == NULL)
         return false;
-    table_store(table, stored->bytes);
+    takt_table_store(table, stored->bytes);
     (*count)++;
     return true;
 }

@@ -17,7 +17,7 @@ static void set_chain(const struct machine_setup *setup, struct deviation_config
         chain->units--;
 }
 
-/* Of a screw that the encoder of its motor does not see. */
+/* Has the screw an error that the encoder of its motor does not see? */
 static bool has_error(const struct drive_plant_config *plant)
 {
     return plant->backlash_mm > 0 || plant->pitch_error_mm > 0;

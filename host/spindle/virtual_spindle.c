@@ -142,7 +142,7 @@ static double ripple_nm(const struct virtual_spindle *s)
     if (s->config.ripple_percent == 0.0 || s->speed_rad_s == 0.0)
         return 0.0;
     return 0.01 * s->config.ripple_percent * s->config.rated_torque_nm *
-           maths_sin(2.0 * MATHS_PI * (turns - maths_floor(turns)));
+           takt_maths_sin(2.0 * MATHS_PI * (turns - takt_maths_floor(turns)));
 }
 
 /* The load resists and never drives: with less torque than it the rotor comes to rest and stays. */
@@ -222,13 +222,13 @@ static double measured_angle_rev(struct virtual_spindle *s)
     const double noise =
         s->config.encoder_noise_counts > 0 ? s->config.encoder_noise_counts * next_noise(s) : 0.0;
 
-    return counts > 0 ? maths_floor(s->angle_rev * counts + noise) / counts : s->angle_rev;
+    return counts > 0 ? takt_maths_floor(s->angle_rev * counts + noise) / counts : s->angle_rev;
 }
 
 struct spindle_feedback virtual_spindle_step(struct virtual_spindle *s, double dt_s,
                                              double commanded_rpm, double load_nm)
 {
-    const unsigned steps = (unsigned)maths_max(1.0, maths_ceil(dt_s / STEP_MAX_S));
+    const unsigned steps = (unsigned)maths_max(1.0, takt_maths_ceil(dt_s / STEP_MAX_S));
     const double part_s = dt_s / (double)steps;
 
     for (unsigned i = 0; i < steps; i++)

@@ -65,11 +65,11 @@ static bool follow(struct comparison *c, enum bore_rival rival, struct simulatio
     bool good = true;
 
     bore_track_begin(track, bore_rival_name(rival), 1e-6 * c->session.setup.machine.cycle_us);
-    while (good && controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
+    while (good && takt_controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
         const struct cycle_record *record;
 
         good = simulation_step(s);
-        record = controller_get_record(&s->controller);
+        record = takt_controller_get_record(&s->controller);
         if (record != NULL)
             good = good && bore_track_add(track, record->set.at[AXIS_X], record->set.at[AXIS_Y],
                                           record->set.at[AXIS_Z]);
@@ -98,8 +98,8 @@ static enum command_status run_checked(struct comparison *c, enum bore_rival riv
         return status;
     if (!follow(c, rival, s))
         status = interrupt_asked() ? STATUS_INTERRUPTED : out_of_memory();
-    else if (controller_get_state(&s->controller) == CONTROLLER_FAULTED) {
-        message_program_error(&c->session.program, controller_get_fault(&s->controller));
+    else if (takt_controller_get_state(&s->controller) == CONTROLLER_FAULTED) {
+        message_program_error(&c->session.program, takt_controller_get_fault(&s->controller));
         status = STATUS_FAILED;
     }
     c->length_mm[rival] = track_length(&c->track[rival]);
@@ -252,7 +252,7 @@ static enum command_status compare(struct comparison *c, const struct options *o
     bool picture_to_stdout = options->output != NULL && strcmp(options->output, "-") == 0;
 
     c->session.options = options;
-    parameters_clear(&c->session.parameters.values);
+    takt_parameters_clear(&c->session.parameters.values);
     if (!machine_file_load(&c->session.setup, options))
         return STATUS_INPUT;
     for (unsigned i = 0; i < c->rivals && status == STATUS_DONE; i++)

@@ -49,18 +49,18 @@ static struct point true_point(const struct machine_setup *setup, const struct s
 
     if (tool != NULL)
         return *tool;
-    field_get_axes(&s->field, &setup->machine, &at);
+    drive_network_get_axes(&s->network, &setup->machine, &at);
     return at;
 }
 
 /* The smaller angle from the last setpoint to this one, whichever way. */
 static double turned_since(struct run *run, const double from_centre_mm[2])
 {
-    const double angle = maths_atan2(from_centre_mm[1], from_centre_mm[0]);
+    const double angle = takt_maths_atan2(from_centre_mm[1], from_centre_mm[0]);
     const double turned = (angle - run->angle_rad) / MATHS_TWO_PI;
 
     run->angle_rad = angle;
-    return MATHS_TWO_PI * maths_abs(turned - maths_round(turned));
+    return MATHS_TWO_PI * maths_abs(turned - takt_maths_round(turned));
 }
 
 static void see(void *context, const struct machine_setup *setup, struct simulation *s,
@@ -113,7 +113,7 @@ enum command_status circle_test_run(struct circle_test *test, const struct optio
                                 .see = see};
     enum command_status status;
 
-    plane_axes(test->plane, &run.axis[0], &run.axis[1]);
+    takt_plane_axes(test->plane, &run.axis[0], &run.axis[1]);
     for (unsigned way = 0; way < CIRCLE_WAYS; way++)
         test->turn[way].radius_mm = test->radius_mm;
     status = study_run(&study, options);

@@ -135,7 +135,7 @@ static bool find_line(const struct run *run, uint32_t line, unsigned *axis, unsi
 static double torque_nm(struct run *run, struct simulation *s, unsigned axis)
 {
     const struct friction_axis *f = &run->test->axis[axis];
-    struct virtual_drive *drive = &s->field.drives.drive[f->drive];
+    struct virtual_drive *drive = &s->network.drives.drive[f->drive];
     uint32_t value = 0;
 
     (void)virtual_drive_read_object(drive, OBJECT_TORQUE, &value);

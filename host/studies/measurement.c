@@ -160,7 +160,7 @@ static void read_instrument(const struct simulation *s, struct measurement_instr
 /* The visit whose dwell is going on, or count. */
 static uint32_t visit_at(const struct simulation *s, uint32_t count)
 {
-    const struct block *block = controller_get_block(&s->controller);
+    const struct block *block = takt_controller_get_block(&s->controller);
 
     if (block == NULL || block->move.kind != MOVE_DWELL || block->move.line <= HEAD_LINES)
         return count;
@@ -173,7 +173,7 @@ static enum command_status run(struct simulation *s, struct measurement_visit *v
     uint32_t standing = count;
     char fault[DIAGNOSTIC_TEXT_MAX];
 
-    while (controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
+    while (takt_controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
         struct tool_point before = s->tool_point;
         uint32_t visit;
 
@@ -189,9 +189,9 @@ static enum command_status run(struct simulation *s, struct measurement_visit *v
         }
         standing = visit;
     }
-    if (controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
+    if (takt_controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
         return STATUS_DONE;
-    (void)diagnostic_text(controller_get_fault(&s->controller), fault);
+    (void)takt_diagnostic_text(takt_controller_get_fault(&s->controller), fault);
     message_command_error("the machine stopped while it was measured: %s", fault);
     return STATUS_FAILED;
 }

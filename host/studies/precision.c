@@ -24,23 +24,23 @@ static void init_form(struct precision_form *form, const struct machine *machine
         motors[i] = (struct virtual_stepper_config){true, 0, ANY_RATE_HZ};
     }
     virtual_steppers_init(&form->motors, motors, machine->cycle_us * 1000);
-    steps_init(&form->steps, &config, &start);
+    takt_steps_init(&form->steps, &config, &start);
 }
 
 void precision_init(struct precision *p, const struct machine *machine)
 {
     struct interpolator_config config;
 
-    controller_interpolator_config(machine, &config);
+    takt_controller_interpolator_config(machine, &config);
     memset(p, 0, sizeof *p);
     p->machine = *machine;
     for (unsigned i = 0; i < PRECISION_FORMS; i++)
         init_form(&p->form[i], machine, (enum steps_form)i);
     config.kind = INTERPOLATOR_INTEGRATE;
-    interpolator_init(&p->integrate, &config);
+    takt_interpolator_init(&p->integrate, &config);
     ramps_init(&p->ramps, machine, config.unit_mm);
     config.kind = INTERPOLATOR_ROTATE;
-    interpolator_init(&p->rotate, &config);
+    takt_interpolator_init(&p->rotate, &config);
 }
 
 static void raise_to(double *largest, double value)
@@ -54,7 +54,7 @@ static void step(struct precision_form *form, const struct cycle_record *record,
 {
     struct step_port port = virtual_steppers_get_port(&form->motors);
 
-    (void)steps_cycle(&form->steps, &port, &record->cmd, curve, record->block);
+    (void)takt_steps_cycle(&form->steps, &port, &record->cmd, curve, record->block);
     virtual_steppers_end_cycle(&form->motors);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct virtual_stepper *motor = &form->motors.axis[i];
@@ -97,7 +97,7 @@ static void interpolate(struct interpolator *i, const struct cycle_record *recor
 {
     struct point cmd = record->cmd;
 
-    interpolator_cycle(i, curve, record->block, record->landed, &cmd);
+    takt_interpolator_cycle(i, curve, record->block, record->landed, &cmd);
 }
 
 void precision_add(struct precision *p, const struct cycle_record *record,

@@ -67,7 +67,7 @@ static void look(struct ramps *r, const struct integrate_line *line, struct foll
     struct point way, moved;
     double step_mm, change_mm;
 
-    integrate_get_way(&line->axes, &way);
+    takt_integrate_get_way(&line->axes, &way);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         moved.at[i] = way.at[i] - f->way.at[i];
     step_mm = length(&moved);
@@ -101,8 +101,8 @@ static void drive_line(struct ramps *r)
     struct follower f = {.step_mm = config.start_mm};
     struct integrate_line line;
 
-    integrate_line_begin(&line, &config, &c->start, &c->end);
-    while (integrate_line_cycle(&line)) {
+    takt_integrate_line_begin(&line, &config, &c->start, &c->end);
+    while (takt_integrate_line_cycle(&line)) {
         r->cycles++;
         look(r, &line, &f);
     }
@@ -128,7 +128,7 @@ static void begin_line(struct ramps *r, const struct cycle_record *record,
 /* The cycle ends at rest, or is one: its mean feed is not that of its end. */
 static bool is_rest(const struct cycle_record *record, const struct block *block)
 {
-    return block == NULL || (record->landed && block->end == JOINT_STOP);
+    return block == NULL || (record->landed && block->end == JUNCTION_STOP);
 }
 
 void ramps_add(struct ramps *r, const struct cycle_record *record, const struct block *block)

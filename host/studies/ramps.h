@@ -34,7 +34,7 @@ struct ramps {
 };
 
 void ramps_init(struct ramps *r, const struct machine *machine, double unit_mm);
-/* One cycle of the run; block as of controller_get_block. */
+/* One cycle of the run; block as of takt_controller_get_block. */
 void ramps_add(struct ramps *r, const struct cycle_record *record, const struct block *block);
 /* The last line. */
 void ramps_finish(struct ramps *r);

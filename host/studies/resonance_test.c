@@ -117,7 +117,7 @@ static void see(void *context, const struct machine_setup *setup, struct simulat
 
     if (axis == AXIS_LINEAR_COUNT)
         return;
-    field_get_axes(&s->field, &setup->machine, &at);
+    drive_network_get_axes(&s->network, &setup->machine, &at);
     const double foot_mm = at.at[axis];
     const double tool_mm = tool != NULL ? tool->at[axis] : foot_mm;
 

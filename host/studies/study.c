@@ -13,20 +13,20 @@
 static enum command_status follow(const struct study *study, const struct session *session,
                                   struct simulation *s)
 {
-    while (controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
+    while (takt_controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
         const struct cycle_record *record;
 
         if (!simulation_step(s))
             return STATUS_ENVIRONMENT;
-        record = controller_get_record(&s->controller);
+        record = takt_controller_get_record(&s->controller);
         if (record != NULL)
             study->see(study->context, &session->setup, s, record);
         if (s->cycles % LOOK_CYCLES == 0 && interrupt_asked())
             return STATUS_INTERRUPTED;
     }
-    if (controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
+    if (takt_controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
         return STATUS_DONE;
-    message_program_error(&session->program, controller_get_fault(&s->controller));
+    message_program_error(&session->program, takt_controller_get_fault(&s->controller));
     return STATUS_FAILED;
 }
 

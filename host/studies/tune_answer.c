@@ -21,7 +21,10 @@
 /* Rests of the move: before it, and between its ways; behind it is as long as behind the step. */
 #define REST_S 0.2
 
-/* In the last part of the time of a step, or of the rest behind a move, the axis stays within this part of the step, or so many steps of the encoder. */
+/*
+ * In the last part of the time of a step, or of the rest behind a move, the axis stays within this part of the step, or
+ * this many steps of the encoder.
+ */
 #define LAST_PART    0.2
 #define STEADY_PART  0.1
 #define STEADY_STEPS 4

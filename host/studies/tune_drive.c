@@ -93,7 +93,7 @@ void tune_drive_push(struct tune_drive *drive, int32_t torque)
 
 void tune_drive_aim(struct tune_drive *drive, double position)
 {
-    const double increments = maths_round(position * drive->config.increments_per_mm);
+    const double increments = takt_maths_round(position * drive->config.increments_per_mm);
 
     (void)tune_drive_write(drive, 0x607A, 0, 32, (uint32_t)(int32_t)increments);
 }

@@ -50,7 +50,7 @@ static void set_range(struct tune_axis *result)
 /* Its torque acts half a step early (drive_plant.c), so it comes half a step later than what was found. */
 static void give(struct drive_plant_config *plant, const struct tuning_plant *found, double step_s)
 {
-    const double steps = maths_round(found->delay_s / step_s + 0.5);
+    const double steps = takt_maths_round(found->delay_s / step_s + 0.5);
 
     if (!(plant->told_inertia_kg_m2 > 0))
         plant->told_inertia_kg_m2 = plant->inertia_kg_m2;

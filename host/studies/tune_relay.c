@@ -16,7 +16,7 @@
 #define TORQUE_FIRST 50
 #define TORQUE_LAST  1000
 
-/* A push ends after so many cycles, when the axis has gone so many steps of its encoder and this part of a turn of the motor. */
+/* Cycles of a push, which ends when the axis has gone this many encoder steps and this part of a turn of the motor. */
 #define PUSH_CYCLES_MIN 8
 #define PUSH_CYCLES_MAX 100
 #define PUSH_STEPS      40
@@ -26,7 +26,7 @@
 #define TURNS      60
 #define CYCLES_MAX 60000
 
-/* X: so many times the way of a push. */
+/* X: this many times the way of a push. */
 #define SWING_WAYS 8
 
 /* The centre is this part of the travel inside of its ends, */
@@ -192,7 +192,7 @@ const char *tune_relay_run(struct tune_axis *result, struct tune_drive *drive,
 
         if (is_found && agree(&before, &result->plant, result->relay.cycle_s))
             return NULL;
-        torque = (int32_t)maths_round(1e3 * result->torque_nm / plant->torque_rated_nm);
+        torque = (int32_t)takt_maths_round(1e3 * result->torque_nm / plant->torque_rated_nm);
         if (torque >= TORQUE_LAST)
             return "tests of its torque do not agree on an inertia and a delay: is friction near "
                    "its rated torque?";

@@ -23,7 +23,7 @@ struct run {
 
 static bool is_gantry(const struct machine *machine, unsigned axis)
 {
-    for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+    for (unsigned i = 0; i < takt_machine_gantry_count(machine); i++) {
         if (machine->gantry[i].axis == axis)
             return true;
     }
@@ -35,7 +35,7 @@ static double bandwidth_max_hz(const struct drive_plant_config *plant)
 {
     const double most = SERVO_LOOP_GAIN_STEP_MAX / (MATHS_TWO_PI * 1e-6 * plant->loop_period_us);
 
-    return maths_floor(1e3 * most) / 1e3;
+    return takt_maths_floor(1e3 * most) / 1e3;
 }
 
 static struct tuning_drive model_of(const struct tune_drive *drive)

@@ -110,7 +110,7 @@ static bool set_knots(struct calibration *c, const struct options *options)
         for (unsigned k = 0; k < points[i]; k++)
             table->knot_mm[i][k] = from[i] + (to[i] - from[i]) * k / (points[i] - 1);
     }
-    if ((uint64_t)table_rows(table) * table->outputs <= TABLE_VALUES_MAX)
+    if ((uint64_t)takt_table_rows(table) * table->outputs <= TABLE_VALUES_MAX)
         return true;
     message_command_error("--grid %s: these are more than %d numbers", options->correction.grid,
                           TABLE_VALUES_MAX);
@@ -217,7 +217,7 @@ static void switch_off(struct calibration *c)
 
 static bool plan_visits(struct calibration *c)
 {
-    const uint32_t rows = table_rows(&c->table);
+    const uint32_t rows = takt_table_rows(&c->table);
 
     c->visits = calloc(2 * (size_t)rows, sizeof *c->visits);
     if (c->visits == NULL) {
@@ -254,7 +254,7 @@ static double value_of(const struct calibration *c, const struct measurement_vis
 static void set_values(struct calibration *c)
 {
     struct table *table = &c->table;
-    const uint32_t rows = table_rows(table);
+    const uint32_t rows = takt_table_rows(table);
 
     for (uint32_t row = 0; row < rows; row++) {
         for (unsigned i = 0; i < table->outputs; i++)
@@ -276,7 +276,7 @@ static enum command_status write_result(const struct calibration *c, const struc
     else
         (void)snprintf(comment, sizeof comment,
                        "measured on %.60s: %u points, noise %.3g um (1 sigma)",
-                       c->session.setup.machine.name, (unsigned)table_rows(&c->table),
+                       c->session.setup.machine.name, (unsigned)takt_table_rows(&c->table),
                        1e3 * c->instrument.sigma);
     return correction_file_write(&c->table, path, comment) ? STATUS_DONE : STATUS_ENVIRONMENT;
 }
@@ -287,13 +287,13 @@ static enum command_status write_result(const struct calibration *c, const struc
 static void compose(struct calibration *c)
 {
     struct table *table = &c->table;
-    const uint32_t rows = table_rows(table);
+    const uint32_t rows = takt_table_rows(table);
 
     for (uint32_t row = 0; row < rows; row++) {
         double deviation[AXIS_COUNT];
 
-        (void)geometry_deviation(c->session.correction->geometry, &c->visits[2 * (size_t)row].at,
-                                 deviation);
+        (void)takt_geometry_deviation(c->session.correction->geometry,
+                                      &c->visits[2 * (size_t)row].at, deviation);
         for (unsigned i = 0; i < table->outputs; i++)
             table->value_mm[row * table->outputs + i] = (float)-deviation[table->output[i].axis];
     }
@@ -304,7 +304,7 @@ static void compose(struct calibration *c)
 static bool fits_grid(const struct table *table, struct diagnostic *wrong)
 {
     struct grid *grid = calloc(1, sizeof *grid);
-    const bool fits = grid != NULL && grid_set(grid, table, wrong);
+    const bool fits = grid != NULL && takt_grid_set(grid, table, wrong);
 
     free(grid);
     return fits;
@@ -318,11 +318,11 @@ static bool check_table(const struct calibration *c)
     struct diagnostic wrong = {0};
     struct table_rules rules;
 
-    correction_table_rules(&machine->correction, machine_axes(machine), &rules);
-    if (table_check(&c->table, &rules, &wrong) &&
+    takt_correction_table_rules(&machine->correction, takt_machine_axes(machine), &rules);
+    if (takt_table_check(&c->table, &rules, &wrong) &&
         (c->table.inputs == 1 || fits_grid(&c->table, &wrong)))
         return true;
-    (void)diagnostic_text(&wrong, text);
+    (void)takt_diagnostic_text(&wrong, text);
     message_command_error("this machine would refuse the table: %s", text);
     return false;
 }
@@ -351,7 +351,8 @@ static enum command_status fill(struct calibration *c, const struct options *opt
         return STATUS_DONE;
     }
     switch_off(c);
-    status = measurement_run(&c->session, c->visits, 2 * table_rows(&c->table), &c->instrument);
+    status =
+        measurement_run(&c->session, c->visits, 2 * takt_table_rows(&c->table), &c->instrument);
     if (status == STATUS_DONE)
         set_values(c);
     return status;

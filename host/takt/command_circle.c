@@ -64,11 +64,11 @@ static bool set_test(struct circle_job *job, const struct options *options)
     test->feed_mm_min = given->feed > 0 ? given->feed : FEED_MM_MIN;
     if (!read_plane(given->plane, &test->plane) || !read_centre(given->centre, test))
         return false;
-    plane_axes(test->plane, &job->axis[0], &job->axis[1]);
+    takt_plane_axes(test->plane, &job->axis[0], &job->axis[1]);
     return true;
 }
 
-static void judge(struct circle_job *job)
+static void verifier(struct circle_job *job)
 {
     const struct circle_turn *const turn[] = {&job->test.turn[CIRCLE_CCW],
                                               &job->test.turn[CIRCLE_CW]};
@@ -169,7 +169,7 @@ static void write_json(FILE *file, const struct circle_job *job)
     cJSON_free(text);
 }
 
-/* Of files that are open: all of them or none. */
+/* Writes files that are open: all of them or none. */
 static bool write_files(const struct circle_job *job, struct output_file *picture,
                         struct output_file *json)
 {
@@ -211,7 +211,7 @@ static enum command_status execute(struct circle_job *job, const struct options 
                      ? circle_test_run(&job->test, options)
                      : STATUS_ENVIRONMENT;
     if (status == STATUS_DONE) {
-        judge(job);
+        verifier(job);
         status = finish(job, options, &picture, &json);
     }
     output_file_discard(&picture);

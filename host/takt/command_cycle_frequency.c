@@ -61,7 +61,7 @@ static bool use_machine_file(struct frequency_job *job, const struct options *op
 
     if (!machine_file_load(&job->setup, options))
         return false;
-    controller_cycle_need(&job->setup.machine, &need, &job->question.limits);
+    takt_controller_cycle_need(&job->setup.machine, &need, &job->question.limits);
     if (need.frequency_hz <= 0) {
         message_command_error("the machine has no two linear axes: no circles, no chord error");
         return false;
@@ -197,25 +197,27 @@ static void print_need(const struct frequency_question *q, const struct cycle_ne
                  need->feed_mm_s * 60);
     if (q->frequency_hz <= 0)
         return;
-    (void)printf(
-        "  the cycle    %.6g Hz: %s; there the chord error would be %.4g mm\n", q->frequency_hz,
-        q->frequency_hz >= need->frequency_hz
-            ? "enough"
-            : "too slow, so the feed of curves is limited to keep the tolerance",
-        cycle_chord_error_mm(need->radius_mm, cycle_step_mm(need->feed_mm_s, q->frequency_hz)));
+    (void)printf("  the cycle    %.6g Hz: %s; there the chord error would be %.4g mm\n",
+                 q->frequency_hz,
+                 q->frequency_hz >= need->frequency_hz
+                     ? "enough"
+                     : "too slow, so the feed of curves is limited to keep the tolerance",
+                 takt_cycle_chord_error_mm(need->radius_mm,
+                                           takt_cycle_step_mm(need->feed_mm_s, q->frequency_hz)));
 }
 
 static void print_row(const struct frequency_question *q, double radius_mm)
 {
     unsigned limits;
-    double feed = cycle_feed_allowed_mm_s(&q->limits, radius_mm, &limits);
+    double feed = takt_cycle_feed_allowed_mm_s(&q->limits, radius_mm, &limits);
 
     (void)printf("  %10.4g %12.6g %12.1f", radius_mm, feed * 60,
-                 cycle_frequency_hz(radius_mm, feed, q->tolerance_mm));
+                 takt_cycle_frequency_hz(radius_mm, feed, q->tolerance_mm));
     if (q->frequency_hz > 0)
-        (void)printf(" %14.6g %14.4g",
-                     60 * cycle_feed_chord_mm_s(radius_mm, q->frequency_hz, q->tolerance_mm),
-                     cycle_chord_error_mm(radius_mm, cycle_step_mm(feed, q->frequency_hz)));
+        (void)printf(
+            " %14.6g %14.4g",
+            60 * takt_cycle_feed_chord_mm_s(radius_mm, q->frequency_hz, q->tolerance_mm),
+            takt_cycle_chord_error_mm(radius_mm, takt_cycle_step_mm(feed, q->frequency_hz)));
     (void)fputs("  ", stdout);
     print_limits(limits);
     (void)fputc('\n', stdout);
@@ -283,7 +285,7 @@ static enum command_status answer(struct frequency_job *job, const struct option
 {
     if (!use_machine(job, options) || !read_question(job, options))
         return STATUS_INPUT;
-    cycle_frequency_find(&job->question.limits, job->question.tolerance_mm, &job->need);
+    takt_cycle_frequency_find(&job->question.limits, job->question.tolerance_mm, &job->need);
     if (!options->quiet) {
         print_head(&job->question);
         print_need(&job->question, &job->need);

@@ -23,7 +23,7 @@
 static enum command_status list(void)
 {
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
 
         (void)printf("%-22s %-7s %s\n", panel_text(row)->name, panel_text(row)->unit,
                      panel_text(row)->meaning);
@@ -59,7 +59,7 @@ static bool find_names(const struct options *options, enum panel_id *id)
 
 static bool show(struct panel_line *line, enum panel_id id)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     char text[PANEL_VALUE_MAX + 1];
 
     if (!panel_line_read(line, id, text))
@@ -107,7 +107,7 @@ static bool show_line(struct panel_line *line, const enum panel_id *id, unsigned
 
         if (!panel_line_read(line, id[i], text))
             return false;
-        (void)printf("%s%s=%s", i > 0 ? "  " : "", panel_texts[id[i]].name, text);
+        (void)printf("%s%s=%s", i > 0 ? "  " : "", takt_panel_texts[id[i]].name, text);
     }
     (void)putchar('\n');
     return fflush(stdout) == 0;

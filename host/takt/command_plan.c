@@ -50,7 +50,7 @@ const struct command command_plan = {
     .help = "One row per block: its length in mm (deg when only rotary axes move); its feed at the "
             "start, its highest\n"
             "feed and its feed at the end in mm/min; how it ends (passed at full feed, reduced for "
-            "the joint, stop); the\n"
+            "the junction, stop); the\n"
             "limit that governs its feed; and its time. An involute has a row for each of its "
             "pieces. A smoothed path\n"
             "(G64 P) shows the number of its pieces and the governing limit of the longest one. "

@@ -92,7 +92,7 @@ static void print_exact(const struct precision *p)
     (void)printf(
         "             words: setpoints of %u bits and more for whole increments; doubles have "
         "53\n",
-        bounds_word_bits(farthest(&p->machine, false)));
+        takt_bounds_word_bits(farthest(&p->machine, false)));
 }
 
 /* Longest way of a line in steps: the range of F. */
@@ -127,15 +127,17 @@ static void print_step_words(const struct precision *p)
     double step_mm = coarsest_step_mm(&p->machine);
 
     (void)printf("             a line over %u axes is left by less than %.4g mm\n", axes,
-                 bounds_line_off_mm(axes, step_mm));
+                 takt_bounds_line_off_mm(axes, step_mm));
     (void)printf("             words: position %u bits; F of lines %u",
-                 bounds_word_bits(farthest(&p->machine, true)), bounds_word_bits(longest_steps(p)));
+                 takt_bounds_word_bits(farthest(&p->machine, true)),
+                 takt_bounds_word_bits(longest_steps(p)));
     if (p->radius_mm > 0)
         (void)printf(", of arcs %u",
-                     bounds_word_bits(2 * p->radius_mm * finest_steps(&p->machine)));
+                     takt_bounds_word_bits(2 * p->radius_mm * finest_steps(&p->machine)));
     (void)printf(
         " bits\n             at 1,000 ticks/s an axis does %.4g mm/s, the path up to %.4g\n",
-        bounds_axis_speed_mm_s(step_mm, 1000), bounds_path_speed_mm_s(axes, step_mm, 1000));
+        takt_bounds_axis_speed_mm_s(step_mm, 1000),
+        takt_bounds_path_speed_mm_s(axes, step_mm, 1000));
 }
 
 /* Lines driven with a feed of their own, beside what the run took for them. */
@@ -153,9 +155,9 @@ static void print_ramps(const struct ramps *r)
 
 static void print_integrate(const struct precision *p)
 {
-    const struct interpolator_errors *errors = interpolator_get_errors(&p->integrate);
-    unsigned fraction = bounds_fraction_bits(errors->loss_ulp);
-    unsigned whole = bounds_word_bits(farthest(&p->machine, false));
+    const struct interpolator_errors *errors = takt_interpolator_get_errors(&p->integrate);
+    unsigned fraction = takt_bounds_fraction_bits(errors->loss_ulp);
+    unsigned whole = takt_bounds_word_bits(farthest(&p->machine, false));
 
     if (p->cycles_max == 0) {
         (void)printf("  %-10s no lines\n", "integrate");
@@ -174,7 +176,7 @@ static void print_integrate(const struct precision *p)
 
 static void print_rotate(const struct precision *p)
 {
-    const struct interpolator_errors *errors = interpolator_get_errors(&p->rotate);
+    const struct interpolator_errors *errors = takt_interpolator_get_errors(&p->rotate);
 
     if (p->radius_mm == 0) {
         (void)printf("  %-10s no arcs\n", "rotate");
@@ -187,8 +189,9 @@ static void print_rotate(const struct precision *p)
         "             words: angle %d to %d bits, speed even to %.2g to %.2g; radius vector "
         "%u bits\n",
         errors->angle_rad, ANGLE_BITS_LOW, ANGLE_BITS_HIGH, 0x1p-6, 0x1p-8,
-        bounds_word_bits(p->radius_mm * p->machine.resolution_per_mm) +
-            bounds_fraction_bits(increment_mm(p) / maths_max(errors->contour_bound_mm, 1e-12)));
+        takt_bounds_word_bits(p->radius_mm * p->machine.resolution_per_mm) +
+            takt_bounds_fraction_bits(increment_mm(p) /
+                                      maths_max(errors->contour_bound_mm, 1e-12)));
 }
 
 /* What the machine's limits alone say, whatever the program. */
@@ -202,14 +205,15 @@ static void print_machine(const struct precision *p)
 
         if (!axis->present)
             continue;
-        ramp = bounds_ramp_cycles(axis->max_velocity_mm_s, axis->max_acceleration_mm_s2, cycle_s);
+        ramp =
+            takt_bounds_ramp_cycles(axis->max_velocity_mm_s, axis->max_acceleration_mm_s2, cycle_s);
         n = (struct bounds_cycles){ramp, p->cycles_max, ramp};
         (void)printf(
             "  axis %c     ramp to full feed %.0f cycles: integration loses up to %.4g units, "
             "%u bits; rotation %.3g mm a turn\n",
-            AXIS_LETTERS[i], ramp, bounds_truncation_ulp(&n),
-            bounds_fraction_bits(bounds_truncation_ulp(&n)),
-            bounds_rotation_turn_mm(axis->max_acceleration_mm_s2, cycle_s));
+            AXIS_LETTERS[i], ramp, takt_bounds_truncation_ulp(&n),
+            takt_bounds_fraction_bits(takt_bounds_truncation_ulp(&n)),
+            takt_bounds_rotation_turn_mm(axis->max_acceleration_mm_s2, cycle_s));
     }
 }
 
@@ -233,14 +237,14 @@ static bool watch(struct precision_job *job)
 {
     const struct controller *controller = &job->simulation->controller;
 
-    while (controller_get_state(controller) < CONTROLLER_COMPLETED) {
+    while (takt_controller_get_state(controller) < CONTROLLER_COMPLETED) {
         const struct cycle_record *record;
 
         if (!simulation_step(job->simulation))
             return false;
-        record = controller_get_record(controller);
+        record = takt_controller_get_record(controller);
         if (record != NULL)
-            precision_add(&job->precision, record, controller_get_block(controller));
+            precision_add(&job->precision, record, takt_controller_get_block(controller));
         if (job->simulation->cycles % LOOK_CYCLES == 0 && interrupt_asked())
             return false;
     }
@@ -250,14 +254,14 @@ static bool watch(struct precision_job *job)
 static enum command_status finish(struct precision_job *job)
 {
     const struct controller *controller = &job->simulation->controller;
-    const struct diagnostic *fault = controller_get_fault(controller);
+    const struct diagnostic *fault = takt_controller_get_fault(controller);
     char text[DIAGNOSTIC_TEXT_MAX];
 
     precision_finish(&job->precision);
     print_precision(&job->session, &job->precision);
-    if (controller_get_state(controller) == CONTROLLER_COMPLETED)
+    if (takt_controller_get_state(controller) == CONTROLLER_COMPLETED)
         return STATUS_DONE;
-    (void)diagnostic_text(fault, text);
+    (void)takt_diagnostic_text(fault, text);
     message_command_error("the program did not end: %s", text);
     return STATUS_FAILED;
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of an accelerometer of the kind that is glued to a machine: some 2 mg. */
+/* Noise of an accelerometer of the kind that is glued to a machine: some 2 mg. */
 #define NOISE_MM_S2 20
 
 static const char section[] = "[geometry]\n";

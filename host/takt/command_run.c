@@ -3,7 +3,7 @@
 #include "cli/message.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
-#include "compiled/compiled_judge.h"
+#include "compiled/compiled_verifier.h"
 #include "results/run.h"
 #include "results/run_outputs.h"
 #include "simulation/drives_table.h"
@@ -34,7 +34,7 @@ static void write_cycle(void *context, const struct cycle_record *record, const 
 
 static void show_progress(struct run_command *c)
 {
-    const struct judge_figures *figures = &c->run.judge.figures;
+    const struct verifier_figures *figures = &c->run.verifier.figures;
     double motions = c->run.totals.last > 0 ? (double)c->run.totals.last : 1;
 
     progress_show(&c->progress, (double)figures->blocks / motions,
@@ -43,15 +43,15 @@ static void show_progress(struct run_command *c)
 
 static bool is_bus_lost(const struct run *run)
 {
-    return field_get_problem(&run->simulation->field) != NULL;
+    return drive_network_get_problem(&run->simulation->network) != NULL;
 }
 
 /* Drives on a bus outside are others' drives: what they do without is told before they have done it, not after. */
 static void tell_drives(struct run_command *c)
 {
-    const struct drives *drives = controller_get_drives(&c->run.simulation->controller);
+    const struct drives *drives = takt_controller_get_drives(&c->run.simulation->controller);
 
-    c->has_told_drives = !c->run.simulation->field.is_outside ||
+    c->has_told_drives = !c->run.simulation->network.is_outside ||
                          drives_table_tell(drives, c->run.session.options->quiet);
 }
 
@@ -120,7 +120,7 @@ static enum command_status finish(struct run_command *c, enum command_status cut
     if (run->summary.outcome == OUTCOME_FAULTED)
         report_fault(run);
     if (is_bus_lost(run))
-        message_command_error("%s", field_get_problem(&run->simulation->field));
+        message_command_error("%s", drive_network_get_problem(&run->simulation->network));
     if (!run->session.options->quiet) {
         summary_write_text(stream, &run->summary);
         run_outputs_list(&c->outputs, stream);
@@ -131,7 +131,7 @@ static enum command_status finish(struct run_command *c, enum command_status cut
 /* What nothing can be kept for. */
 static enum command_status tell_why(const struct run *run)
 {
-    if (run->judge.tube.path.failed)
+    if (run->verifier.tube.path.failed)
         message_command_error("out of memory");
     else if (run->simulation->target.problem[0] != '\0')
         message_command_error("--target: %s", run->simulation->target.problem);
@@ -143,7 +143,7 @@ static enum command_status tell_why(const struct run *run)
 static enum command_status cut_by_signal(const struct run *run)
 {
     if (!interrupt_asked() ||
-        controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED)
+        takt_controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED)
         return STATUS_DONE;
     return (enum command_status)interrupt_status();
 }

@@ -52,13 +52,13 @@ static void print_figures(const struct serving *s)
     const struct server *server = &s->server;
     struct pace_figures pace;
 
-    pace_get_figures(&s->field.pace, &pace);
+    pace_get_figures(&s->network.pace, &pace);
     (void)printf("served %" PRIu64 " cycles, %" PRIu64 " of them over their time\n", s->cycles,
                  pace.overruns);
     (void)printf("  late        mean %.1f us, 99 %%: %.1f, max: %.1f\n",
                  1e-3 * pace.lateness_mean_ns, 1e-3 * pace.lateness_p99_ns,
                  1e-3 * (double)pace.lateness_max_ns);
-    print_lateness(&s->field.pace);
+    print_lateness(&s->network.pace);
     (void)printf("  panel       %llu requests, %llu connections, %llu refused, %llu dropped\n",
                  (unsigned long long)server->answered, (unsigned long long)server->accepted,
                  (unsigned long long)server->refused, (unsigned long long)server->dropped);

@@ -113,7 +113,7 @@ static void write_bytes(FILE *file, uint32_t value, unsigned bytes)
     (void)fwrite(byte, 1, bytes, file);
 }
 
-/* Of the axis that is there: a concise configuration (CiA 302, 1F22). */
+/* Gains of the axis that was measured: a concise configuration (CiA 302, 1F22). */
 static void write_dcf(FILE *file, const struct tune_test *test)
 {
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {

@@ -243,7 +243,7 @@ static void open(void *context, struct servo *servo, const struct servo_config *
                               !wire_write(image->process.to, config, TWIN_CONFIG_SIZE)))
         (void)is_gone(image);
     image->is_in_order =
-        true; /* of the start: servo_init asks, and nobody says that it has ended */
+        true; /* of the start: takt_servo_init asks, and nobody says that it has ended */
 }
 
 static bool shake_hands(struct drive_image *image)

@@ -21,7 +21,7 @@
 /* The talk takes two places. */
 #define FILES_MAX (1 + PROCESS_FILES)
 
-/* An image that has been told to end is gone after so many looks, or will not go. */
+/* An image that has been told to end is gone after this many looks, or will not go. */
 #define END_LOOKS   200
 #define END_LOOK_NS 10000000L
 

@@ -35,7 +35,7 @@ bool target_is_known(const char *name)
 static bool next_parameter(const struct parameters *parameters, struct remote_parameter *next)
 {
     unsigned number = next->number;
-    const bool found = parameters_next(parameters, &number, &next->value);
+    const bool found = takt_parameters_next(parameters, &number, &next->value);
 
     next->number = number;
     return found;
@@ -126,7 +126,7 @@ static bool shake_hands(struct target *t)
         return fail(t, "the image has ended at its start");
     if (ready.error == TAKT_OK)
         return true;
-    (void)diagnostic_text(&(struct diagnostic){.code = (enum takt_error)ready.error}, text);
+    (void)takt_diagnostic_text(&(struct diagnostic){.code = (enum takt_error)ready.error}, text);
     return fail(t, "the image refuses its setup: %s", text);
 }
 
@@ -265,9 +265,9 @@ static bool is_same_record(const struct cycle_record *a, const struct cycle_reco
 
 static bool is_same(const struct target *t, const struct controller *here)
 {
-    const struct cycle_record *record = controller_get_record(here);
+    const struct cycle_record *record = takt_controller_get_record(here);
 
-    return t->done.state == (uint32_t)controller_get_state(here) && is_same_traffic(t) &&
+    return t->done.state == (uint32_t)takt_controller_get_state(here) && is_same_traffic(t) &&
            (t->done.has_record != 0) == (record != NULL) &&
            (record == NULL || is_same_record(record, &t->done.record));
 }

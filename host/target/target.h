@@ -85,7 +85,7 @@ void target_close(struct target *target);
 /* The bus of the controller in this process. */
 struct can_port target_get_port(struct target *target);
 
-/* rise_k: AXIS_COUNT temperatures as correction_set_rise takes them. False: target->problem. */
+/* rise_k: AXIS_COUNT temperatures as takt_correction_set_rise takes them. False: target->problem. */
 bool target_begin_cycle(struct target *target, const struct inputs *inputs, const double *rise_k);
 
 /* controller: of this process, after the same cycle. False: target->problem. */

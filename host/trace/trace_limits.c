@@ -4,7 +4,7 @@
 #include "base/maths.h"
 #include "cli/axis_unit.h"
 #include "cli/message.h"
-#include "judge/judge.h"
+#include "verifier/verifier.h"
 
 #include <stdio.h>
 
@@ -51,10 +51,10 @@ static void find_axes(struct limits_watch *w, const struct machine *machine)
         w->axis[w->axes++] = (struct axis_watch){
             .axis = i,
             .column = column,
-            .watch = {{.limit = axis->max_velocity_mm_s * unit, .ratio = JUDGE_VELOCITY_RATIO},
+            .watch = {{.limit = axis->max_velocity_mm_s * unit, .ratio = VERIFIER_VELOCITY_RATIO},
                       {.limit = axis->max_acceleration_mm_s2 * unit,
-                       .ratio = JUDGE_ACCELERATION_RATIO},
-                      {.limit = axis->max_jerk_mm_s3 * unit, .ratio = JUDGE_JERK_RATIO}},
+                       .ratio = VERIFIER_ACCELERATION_RATIO},
+                      {.limit = axis->max_jerk_mm_s3 * unit, .ratio = VERIFIER_JERK_RATIO}},
         };
     }
 }
@@ -101,7 +101,7 @@ static void watch_row(struct limits_watch *w)
     if (w->rows == 0)
         w->first_time_s = time_s;
     if (w->rows == 1) /* whole microseconds, as cycles are */
-        w->cycle_s = maths_round((time_s - w->first_time_s) * 1e6) * 1e-6;
+        w->cycle_s = takt_maths_round((time_s - w->first_time_s) * 1e6) * 1e-6;
     w->last_time_s = time_s;
     for (unsigned i = 0; i < w->axes; i++)
         watch_axis(w, &w->axis[i]);

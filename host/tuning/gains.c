@@ -57,7 +57,7 @@ static struct loops loops_of(const struct tuning_plant *plant, const struct tuni
     };
 }
 
-/* Of an open loop at a frequency: how much it makes of a sine, and by which angle that is ahead. */
+/* Response of an open loop at a frequency: how much it makes of a sine, and by which angle that is ahead. */
 struct response {
     double gain, phase_rad;
 };

@@ -25,7 +25,7 @@
 
 enum number { TORQUE, WAY, SIGN, FALL, NUMBERS };
 
-/* Delays: up to 24 cycles, first in quarters of one; then so often about the best, each time so many times finer. */
+/* Delays: up to 24 cycles, first in quarters of one; then REFINEMENTS times about the best, each FINER times finer. */
 #define DELAYS      99
 #define DELAY_PARTS 4
 #define REFINEMENTS 6
@@ -41,7 +41,7 @@ enum number { TORQUE, WAY, SIGN, FALL, NUMBERS };
 struct problem {
     const struct tuning_record *record;
     size_t apart;            /* m, cycles */
-    size_t rows;             /* second differences: so many cycles without m at either end */
+    size_t rows;             /* second differences: all cycles but m at either end */
     double *first, *second;  /* integrals of the torque at the beginning of each cycle */
     double *column[NUMBERS]; /* second differences, by row */
     double *position;        /* the same of the position */
@@ -49,7 +49,7 @@ struct problem {
     double torque_variance; /* of answer[TORQUE], in the variance of a row */
 };
 
-/* Of numbers that are constant over each cycle. */
+/* Integrals of numbers that are constant over each cycle. */
 static void integrate_twice(const double *of, size_t count, double cycle_s, double *first,
                             double *second)
 {
@@ -91,7 +91,7 @@ static double direction(const struct tuning_record *r, size_t k)
     return fmin(fmax(moved / half, -1), 1);
 }
 
-/* Of numbers by cycle. */
+/* Second differences of numbers by cycle. */
 static void difference(const struct problem *p, const double *of, double *to)
 {
     const size_t m = p->apart;
@@ -206,7 +206,7 @@ static double left_with(struct problem *p, double delay_cycles)
     return sum / (double)p->rows;
 }
 
-/* The best delay from one on, of so many. */
+/* The best delay from one on, of this many. */
 static double best_delay(struct problem *p, double from, double step, unsigned count)
 {
     double best = from, least = MATHS_INFINITY;

@@ -14,7 +14,7 @@
 
 #define DELAY_MAX 4096u /* steps; a power of two */
 
-/* It is looked at for so many time constants of the slowest of its parts, and is lost when so far away. */
+/* It is looked at for this many time constants of the slowest of its parts, and is lost when this far away. */
 #define TIME_CONSTANTS 12.0
 #define STEPS_MAX      400000.0
 #define LOST           20.0

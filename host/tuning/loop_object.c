@@ -17,7 +17,7 @@ uint32_t loop_object_of(const struct tuning_gains *gains, unsigned i)
 {
     const char *field = (const char *)gains + loop_number[i].field;
     const double value =
-        maths_round(*(const double *)(const void *)field * loop_number[i].per_unit);
+        takt_maths_round(*(const double *)(const void *)field * loop_number[i].per_unit);
 
     return (uint32_t)maths_clamp(value, 0, UINT32_MAX);
 }

@@ -36,29 +36,29 @@ static void prepare_arguments(double low, double high)
 static double both_of_sincos(double x)
 {
     double sine, cosine;
-    maths_sincos(x, &sine, &cosine);
+    takt_maths_sincos(x, &sine, &cosine);
     return sine + cosine;
 }
 
 static double atan2_around(double x)
 {
-    return maths_atan2(x, 0.7 - 0.3 * x);
+    return takt_maths_atan2(x, 0.7 - 0.3 * x);
 }
 
 static double power_of(double x)
 {
-    return maths_power(x, 1.7);
+    return takt_maths_power(x, 1.7);
 }
 
 static double digest_of(double x)
 {
-    return (double)fnv_add_double(FNV_START, x);
+    return (double)takt_fnv_add_double(FNV_START, x);
 }
 
 static double written_with_9_places(double x)
 {
     char written[DECIMAL_TEXT_MAX];
-    return (double)decimal_write(written, x, 9) + written[0];
+    return (double)takt_decimal_write(written, x, 9) + written[0];
 }
 
 /* The arguments as text, as a part program has them. */
@@ -71,7 +71,7 @@ static void prepare_texts(unsigned places)
 {
     prepare_arguments(0.0, 1e3);
     for (int i = 0; i < ARGUMENTS; i++) {
-        text[i].length = decimal_write(text[i].digits, argument[i], places);
+        text[i].length = takt_decimal_write(text[i].digits, argument[i], places);
         argument[i] = i;
     }
 }
@@ -79,7 +79,7 @@ static void prepare_texts(unsigned places)
 static double read_text(double i)
 {
     double value = 0.0;
-    (void)decimal_read(text[(int)i].digits, text[(int)i].length, &value);
+    (void)takt_decimal_read(text[(int)i].digits, text[(int)i].length, &value);
     return value;
 }
 
@@ -113,18 +113,18 @@ static void measure(const char *name, double (*function)(double), double low, do
 int main(void)
 {
     measure("maths_sincos", both_of_sincos, -100.0, 100.0);
-    measure("maths_sin", maths_sin, -100.0, 100.0);
-    measure("maths_cos", maths_cos, -100.0, 100.0);
-    measure("maths_tan", maths_tan, -100.0, 100.0);
+    measure("maths_sin", takt_maths_sin, -100.0, 100.0);
+    measure("maths_cos", takt_maths_cos, -100.0, 100.0);
+    measure("maths_tan", takt_maths_tan, -100.0, 100.0);
     measure("maths_atan2", atan2_around, -10.0, 10.0);
-    measure("maths_asin", maths_asin, -1.0, 1.0);
-    measure("maths_acos", maths_acos, -1.0, 1.0);
-    measure("maths_cbrt", maths_cbrt, 0.0, 1e6);
-    measure("maths_exp", maths_exp, -10.0, 10.0);
-    measure("maths_ln", maths_ln, 0.0, 1e6);
+    measure("maths_asin", takt_maths_asin, -1.0, 1.0);
+    measure("maths_acos", takt_maths_acos, -1.0, 1.0);
+    measure("maths_cbrt", takt_maths_cbrt, 0.0, 1e6);
+    measure("maths_exp", takt_maths_exp, -10.0, 10.0);
+    measure("maths_ln", takt_maths_ln, 0.0, 1e6);
     measure("maths_power", power_of, 0.0, 1e3);
-    measure("maths_floor", maths_floor, -1e3, 1e3);
-    measure("maths_round", maths_round, -1e3, 1e3);
+    measure("maths_floor", takt_maths_floor, -1e3, 1e3);
+    measure("maths_round", takt_maths_round, -1e3, 1e3);
     measure("fnv_add_double", digest_of, -1e3, 1e3);
     measure("decimal_write, 9 places", written_with_9_places, -1e3, 1e3);
     prepare_texts(4);

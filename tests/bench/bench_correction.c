@@ -36,10 +36,10 @@ static void make_volume(void)
         for (unsigned k = 0; k < points[i]; k++)
             table.knot_mm[i][k] = size_mm[i] * k / (points[i] - 1);
     }
-    for (uint32_t row = 0; row < table_rows(&table); row++)
+    for (uint32_t row = 0; row < takt_table_rows(&table); row++)
         for (unsigned o = 0; o < 3; o++)
             table.value_mm[3 * row + o] = (float)(0.02 * sin(0.7 * row + o));
-    if (!grid_set(&volume.volume, &table, &wrong))
+    if (!takt_grid_set(&volume.volume, &table, &wrong))
         abort();
 }
 
@@ -58,7 +58,7 @@ static void make_axis(uint8_t axis)
         table.value_mm[2 * k] = 0.01F;
         table.value_mm[2 * k + 1] = -0.01F;
     }
-    if (!axis_tables_add(&axes.axes, &table, &wrong))
+    if (!takt_axis_tables_add(&axes.axes, &table, &wrong))
         abort();
 }
 
@@ -77,17 +77,17 @@ static void measure(const char *name, const struct correction_settings *settings
     struct point start = {{0}}, set = start;
     double sum = 0, began;
 
-    correction_init(&correction, settings, 7, CYCLE_S, with, &start);
+    takt_correction_init(&correction, settings, 7, CYCLE_S, with, &start);
     for (int i = 0; i < 5000; i++) {
         const struct point cmd = at(i, mm_s);
 
-        correction_cycle(&correction, &cmd, &move, &set);
+        takt_correction_cycle(&correction, &cmd, &move, &set);
     }
     began = now_s();
     for (int i = 0; i < CYCLES; i++) {
         const struct point cmd = at(i, mm_s);
 
-        correction_cycle(&correction, &cmd, &move, &set);
+        takt_correction_cycle(&correction, &cmd, &move, &set);
         sum += set.at[0];
     }
     printf("%-34s %6.1f mm/s  %6.1f ns a cycle%s\n", name, mm_s, 1e9 * (now_s() - began) / CYCLES,
@@ -98,7 +98,7 @@ int main(void)
 {
     struct correction_settings none, matrix;
 
-    correction_settings_set_default(&none);
+    takt_correction_settings_set_default(&none);
     matrix = none;
     matrix.machine[0][0] = matrix.machine[1][0] = 1e-5;
     make_axis(AXIS_X);

@@ -65,14 +65,14 @@ static void init_master(uint16_t heartbeat_ms)
                                                      .node = (uint8_t)(i + 1),
                                                      .increments_per_mm = 1e5,
                                                      .following_error_max_mm = 1.0};
-    drives_init(&master, &config);
+    takt_drives_init(&master, &config);
 }
 
 static void loop_cycle(const struct point *point)
 {
-    drives_receive(&master, &port);
-    drives_sync(&master, &port);
-    drives_send(&master, &port, point);
+    takt_drives_receive(&master, &port);
+    takt_drives_sync(&master, &port);
+    takt_drives_send(&master, &port, point);
     bus_run_until(&bus, bus_now_ns(&bus) + CYCLE_NS);
     virtual_drives_step(&set, CYCLE_NS);
 }
@@ -159,9 +159,9 @@ static void run_master(void)
     answers = 0;
     for (unsigned k = 0; k < CYCLES; k++) {
         null.context = &setpoint[(k + AHEAD - DRIVES_LATENCY_CYCLES) % AHEAD];
-        drives_receive(&master, &null);
-        drives_sync(&master, &null);
-        drives_send(&master, &null, &setpoint[k % AHEAD]);
+        takt_drives_receive(&master, &null);
+        takt_drives_sync(&master, &null);
+        takt_drives_send(&master, &null, &setpoint[k % AHEAD]);
     }
 }
 

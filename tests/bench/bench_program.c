@@ -22,7 +22,7 @@
 #define LINES_FEW  1000UL
 #define LINES_MANY 1000000UL
 #define ROUNDS     3
-/* Of a child that could not be started. */
+/* Exit status of a child that could not be started. */
 #define STATUS_NO_PROGRAM 127
 
 /* What a process of its own has taken. */
@@ -80,9 +80,9 @@ static unsigned long interpret(const char *path)
         config.travel_min[axis] = -500.0;
         config.travel_max[axis] = 500.0;
     }
-    parameters_clear(&parameters);
-    program_open(&program, &config, &source);
-    while (program_next(&program, &move, &error) == PROGRAM_MOVE) {
+    takt_parameters_clear(&parameters);
+    takt_program_open(&program, &config, &source);
+    while (takt_program_next(&program, &move, &error) == PROGRAM_MOVE) {
         moves++;
     }
     (void)fclose(file);

@@ -7,7 +7,7 @@
  */
 #define _DEFAULT_SOURCE
 
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "program/program.h"
 #include "smooth/smooth.h"
 
@@ -36,7 +36,7 @@ struct yield {
 
 static struct program program;
 static struct parameters parameters;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct smooth smooth;
 static union smooth_scratch scratch;
 
@@ -100,10 +100,11 @@ static void read_moves(FILE *file)
         config.travel_min[i] = -TRAVEL_MM;
         config.travel_max[i] = TRAVEL_MM;
     }
-    parameters_clear(&parameters);
-    program_open(&program, &config, &source);
-    offset_open(&offset, &config);
-    while ((result = offset_next(&offset, &program, &move, &error)) == PROGRAM_MOVE) {
+    takt_parameters_clear(&parameters);
+    takt_program_open(&program, &config, &source);
+    takt_cutter_compensation_open(&offset, &config);
+    while ((result = takt_cutter_compensation_next(&offset, &program, &move, &error)) ==
+           PROGRAM_MOVE) {
         keep_move(&move);
     }
     if (result == PROGRAM_ERROR) {
@@ -118,7 +119,7 @@ static void take_all(struct yield *yield)
     struct curve curve;
     enum smooth_taken taken;
 
-    while ((taken = smooth_take(&smooth, &scratch, &piece, &curve)) != SMOOTH_NONE) {
+    while ((taken = takt_smooth_take(&smooth, &scratch, &piece, &curve)) != SMOOTH_NONE) {
         if (taken == SMOOTH_MOTION) {
             yield->motions++;
             continue;
@@ -130,24 +131,24 @@ static void take_all(struct yield *yield)
 
 static void finish(struct yield *yield)
 {
-    smooth_finish(&smooth);
+    takt_smooth_finish(&smooth);
     take_all(yield);
 }
 
 static void push(const struct move *move, uint32_t number, const struct curve *curve,
                  struct yield *yield)
 {
-    if (!smooth_takes(move, curve)) {
+    if (!takt_smooth_takes(move, curve)) {
         finish(yield);
         return;
     }
-    if (!smooth_joins(&smooth, move)) {
+    if (!takt_smooth_joins(&smooth, move)) {
         finish(yield);
     }
-    while (!smooth_has_room(&smooth)) {
+    while (!takt_smooth_has_room(&smooth)) {
         take_all(yield);
     }
-    smooth_push(&smooth, move, number, curve);
+    takt_smooth_push(&smooth, move, number, curve);
     take_all(yield);
 }
 
@@ -163,7 +164,7 @@ static void smooth_program(struct yield *yield)
             continue;
         }
         number++;
-        if (move_curve(&moves[i], &end, &curve)) {
+        if (takt_move_curve(&moves[i], &end, &curve)) {
             push(&moves[i], number, &curve, yield);
         }
         end = moves[i].end;
@@ -200,7 +201,7 @@ static double one_round(struct yield *yield)
 
     set_limits(&limits);
     *yield = nothing;
-    smooth_init(&smooth, &limits);
+    takt_smooth_init(&smooth, &limits);
     const double began_s = now_s();
 
     smooth_program(yield);

@@ -40,7 +40,7 @@ bool can_model_asks_received(void);
 /* Frames in mailboxes. */
 unsigned can_model_waiting(void);
 
-/* A bit on the bus, in quanta of so many clocks. */
+/* A bit on the bus, in quanta of divider clocks. */
 struct can_model_bit {
     uint32_t divider, quanta, sampled,
         jump; /* sampled: before the sample; jump: to keep step, at most */

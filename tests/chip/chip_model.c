@@ -49,7 +49,7 @@ static const struct chip_block *find(uint32_t address)
     abort();
 }
 
-uint32_t chip_read(uint32_t address)
+uint32_t takt_chip_read(uint32_t address)
 {
     const struct chip_block *block = find(address);
 
@@ -59,7 +59,7 @@ uint32_t chip_read(uint32_t address)
     return block->read(address - block->base);
 }
 
-void chip_write(uint32_t address, uint32_t value)
+void takt_chip_write(uint32_t address, uint32_t value)
 {
     const struct chip_block *block = find(address);
 
@@ -68,12 +68,12 @@ void chip_write(uint32_t address, uint32_t value)
     block->write(address - block->base, value);
 }
 
-uint32_t chip_lock(void)
+uint32_t takt_chip_lock(void)
 {
     return (uint32_t)locks++;
 }
 
-void chip_unlock(uint32_t before)
+void takt_chip_unlock(uint32_t before)
 {
     if ((uint32_t)--locks != before)
         chip_model_break("chip_unlock without its chip_lock");

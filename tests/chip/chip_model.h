@@ -2,7 +2,7 @@
  * A chip as far as its drivers touch it (f405_model.c, h743_model.c): registers that behave as the reference manual says, so that the drivers
  * run on the host as they are. It links in place of hal/stm32/chip_memory.c.
  *
- * Time is the number of reads: what the hardware needs time for is there so many reads later.
+ * Time is the number of reads: what the hardware needs time for is there a number of reads later.
  */
 #ifndef TAKT_TESTS_CHIP_MODEL_H
 #define TAKT_TESTS_CHIP_MODEL_H
@@ -20,7 +20,7 @@ const char *chip_model_broken(void);
 /* Reads of registers since the reset. */
 uint64_t chip_model_reads(void);
 
-/* Depth of chip_lock. */
+/* Depth of takt_chip_lock. */
 int chip_model_locks(void);
 
 /* For the models of the peripherals. */
@@ -33,7 +33,7 @@ struct chip_block {
     void (*reset)(void);
 };
 
-/* Of the chip that is modelled. */
+/* Blocks of the chip that is modelled. */
 extern const struct chip_block *const chip_blocks[];
 extern const size_t chip_blocks_count;
 

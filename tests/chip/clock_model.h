@@ -15,10 +15,10 @@ struct clock_model {
 
 extern struct clock_model clock_model;
 
-/* Of the core and of APB1, as the registers now say. */
+/* Clocks of the core and of APB1, as the registers now say. */
 uint32_t clock_model_core_hz(void);
 uint32_t clock_model_bus1_hz(void);
-/* Of the CAN controller, where it has a clock of its own; 0: it stands still. */
+/* Clock of the CAN controller, where it has one of its own; 0: it stands still. */
 uint32_t clock_model_can_hz(void);
 
 /* The register of the wait states, which the flash's model has among its own. */

@@ -215,18 +215,18 @@ static void reset_memory(void)
 const struct chip_block chip_flash_memory = {FLASH_SECTOR_ADDRESS, FLASH_MODEL_BYTES, read_memory,
                                              write_memory, reset_memory};
 
-void peripherals_forget(uint32_t address, uint32_t bytes)
+void takt_peripherals_forget(uint32_t address, uint32_t bytes)
 {
     for (uint32_t at = 0; at < bytes; at += LINE)
         is_old[(address - FLASH_SECTOR_ADDRESS + at) / LINE] = false;
 }
 
 /* The model has an order. */
-void peripherals_order(void)
+void takt_peripherals_order(void)
 {
 }
 
-void peripherals_touch(uint32_t address)
+void takt_peripherals_touch(uint32_t address)
 {
     if (is_torn[(address - FLASH_SECTOR_ADDRESS) / LINE])
         status |= DAMAGED;

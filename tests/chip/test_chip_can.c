@@ -15,9 +15,9 @@ static void interrupt(void)
 {
     for (int i = 0; i < 10 && (can_model_asks_sent() || can_model_asks_received()); i++) {
         if (can_model_asks_sent())
-            can_controller_interrupt_sent(&can);
+            takt_can_controller_interrupt_sent(&can);
         if (can_model_asks_received())
-            can_controller_interrupt_received(&can);
+            takt_can_controller_interrupt_received(&can);
     }
     TEST_ASSERT_FALSE_MESSAGE(can_model_asks_sent() || can_model_asks_received(),
                               "an interrupt is never served");
@@ -27,9 +27,9 @@ static bool open_for(unsigned nodes, const uint8_t *node)
 {
     const struct can_config config = {
         .clock_hz = can_model_clock_hz, .rates = {1000000, 0}, .nodes = nodes, .node = node};
-    const bool good = can_controller_open(&can, &config);
+    const bool good = takt_can_controller_open(&can, &config);
 
-    port = can_controller_get_port(&can);
+    port = takt_can_controller_get_port(&can);
     return good;
 }
 
@@ -37,7 +37,7 @@ void setUp(void)
 {
     chip_model_reset();
     TEST_ASSERT_TRUE(open_for(0, NULL));
-    TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
 }
 
 void tearDown(void)
@@ -98,7 +98,7 @@ static bool open_at(uint32_t clock_hz, uint32_t bitrate)
 {
     const struct can_config config = {.clock_hz = clock_hz, .rates = {bitrate, 0}};
 
-    return can_controller_open(&can, &config);
+    return takt_can_controller_open(&can, &config);
 }
 
 static void check_timing(uint32_t clock_hz, uint32_t bitrate)
@@ -126,9 +126,9 @@ static void check_refused(uint32_t bitrate)
 {
     const struct can_rates rates = {bitrate, 0};
 
-    TEST_ASSERT_EQUAL(bitrate, can_hardware_find_impossible(can_model_clock_hz, &rates));
+    TEST_ASSERT_EQUAL(bitrate, takt_can_hardware_find_impossible(can_model_clock_hz, &rates));
     TEST_ASSERT_FALSE(open_at(can_model_clock_hz, bitrate));
-    TEST_ASSERT_EQUAL(CAN_ABSENT, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_ABSENT, takt_can_controller_get_state(&can));
 }
 
 static void test_a_rate_the_clock_cannot_be_divided_into_is_refused(void)
@@ -184,7 +184,7 @@ static void test_an_urgent_frame_waits_for_one_other_at_most(void)
     expect(0x80, 9);
     for (unsigned id = 0x602; id <= 0x606; id++)
         expect(id, id);
-    TEST_ASSERT_EQUAL(1, can_controller_get_counts(&can)->taken_back);
+    TEST_ASSERT_EQUAL(1, takt_can_controller_get_counts(&can)->taken_back);
 }
 
 static void test_what_is_taken_back_goes_before_others_of_its_identifier(void)
@@ -218,7 +218,7 @@ static void test_a_frame_that_gets_through_while_it_is_called_back_is_sent_once(
     expect(0x604, 3);
     expect(0x605, 2);
     expect_silence();
-    TEST_ASSERT_EQUAL(0, can_controller_get_counts(&can)->taken_back);
+    TEST_ASSERT_EQUAL(0, takt_can_controller_get_counts(&can)->taken_back);
 }
 
 static void test_a_frame_without_acknowledge_is_repeated(void)
@@ -245,7 +245,7 @@ static void test_a_full_queue_refuses_and_what_is_in_it_is_sent(void)
     for (unsigned i = 0; i < taken; i++)
         (void)transfer();
     expect_silence();
-    TEST_ASSERT_EQUAL(taken, can_controller_get_counts(&can)->sent);
+    TEST_ASSERT_EQUAL(taken, takt_can_controller_get_counts(&can)->sent);
     TEST_ASSERT_TRUE(send(0x601, 0));
 }
 
@@ -318,7 +318,7 @@ static void test_random_traffic_loses_nothing_and_keeps_order_and_priority(void)
     for (unsigned i = 0; i < 8; i++)
         TEST_ASSERT_EQUAL(run.next[i] - run.inside[i], run.seen[i]);
     TEST_ASSERT_GREATER_THAN(50000, sent);
-    TEST_ASSERT_GREATER_THAN(1000, can_controller_get_counts(&can)->taken_back);
+    TEST_ASSERT_GREATER_THAN(1000, takt_can_controller_get_counts(&can)->taken_back);
 }
 
 /* ---- receiving ---- */
@@ -350,7 +350,7 @@ static void test_frames_are_received_in_their_order(void)
         expect_received(0x181 + i % 3, i);
     }
     TEST_ASSERT_FALSE(port.receive(port.context, &frame));
-    TEST_ASSERT_EQUAL(1000, can_controller_get_counts(&can)->received);
+    TEST_ASSERT_EQUAL(1000, takt_can_controller_get_counts(&can)->received);
 }
 
 static void test_an_overrun_of_the_fifo_is_counted_and_the_rest_is_right(void)
@@ -363,7 +363,7 @@ static void test_an_overrun_of_the_fifo_is_counted_and_the_rest_is_right(void)
     for (unsigned i = 0; i + 1 < can_model_fifo; i++)
         expect_received(0x181, i);
     TEST_ASSERT_TRUE(port.receive(port.context, &newest)); /* some controllers write over it */
-    TEST_ASSERT_EQUAL(1, can_controller_get_counts(&can)->overruns);
+    TEST_ASSERT_EQUAL(1, takt_can_controller_get_counts(&can)->overruns);
     hear(0x181, 99);
     interrupt();
     expect_received(0x181, 99);
@@ -375,7 +375,7 @@ static void test_a_full_ring_keeps_the_oldest_and_counts_the_others(void)
         hear(0x181, i);
         interrupt();
     }
-    TEST_ASSERT_EQUAL(100 - (CAN_RECEIVED_MAX - 1), can_controller_get_counts(&can)->lost);
+    TEST_ASSERT_EQUAL(100 - (CAN_RECEIVED_MAX - 1), takt_can_controller_get_counts(&can)->lost);
     for (unsigned i = 0; i < CAN_RECEIVED_MAX - 1; i++)
         expect_received(0x181, i);
 }
@@ -465,21 +465,21 @@ static void test_after_bus_off_what_was_to_be_sent_is_dropped_and_the_bus_joined
         send(0x201 + i, i);
     TEST_ASSERT_TRUE(can_model_begin(&frame));
     can_model_lose_bus();
-    can_controller_poll(&can);
+    takt_can_controller_poll(&can);
     interrupt();
-    TEST_ASSERT_EQUAL(CAN_BUS_OFF, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_BUS_OFF, takt_can_controller_get_state(&can));
     TEST_ASSERT_FALSE(send(0x80, 1));
     for (int i = 0; i < 100; i++)
-        can_controller_poll(&can);
-    TEST_ASSERT_EQUAL(CAN_REJOINING, can_controller_get_state(&can));
+        takt_can_controller_poll(&can);
+    TEST_ASSERT_EQUAL(CAN_REJOINING, takt_can_controller_get_state(&can));
     TEST_ASSERT_FALSE(send(0x80, 1));
     can_model_calm();
     for (int i = 0; i < 100; i++)
-        can_controller_poll(&can);
-    TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
+        takt_can_controller_poll(&can);
+    TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
     expect_silence();
-    TEST_ASSERT_EQUAL(10, can_controller_get_counts(&can)->dropped);
-    TEST_ASSERT_EQUAL(1, can_controller_get_counts(&can)->bus_offs);
+    TEST_ASSERT_EQUAL(10, takt_can_controller_get_counts(&can)->dropped);
+    TEST_ASSERT_EQUAL(1, takt_can_controller_get_counts(&can)->bus_offs);
     TEST_ASSERT_TRUE(send(0x80, 7));
     expect(0x80, 7);
 }
@@ -491,16 +491,16 @@ static void test_a_bus_lost_a_hundred_times_is_joined_a_hundred_times(void)
         send(0x80, i);
         can_model_lose_bus();
         for (int polls = 0; polls < 150; polls++) {
-            can_controller_poll(&can);
+            takt_can_controller_poll(&can);
             interrupt();
             if (polls == 100)
                 can_model_calm();
         }
-        TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
+        TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
         TEST_ASSERT_TRUE(send(0x80, i));
         expect(0x80, i);
     }
-    TEST_ASSERT_EQUAL(100, can_controller_get_counts(&can)->bus_offs);
+    TEST_ASSERT_EQUAL(100, takt_can_controller_get_counts(&can)->bus_offs);
 }
 
 static void test_a_frame_called_back_when_the_bus_is_lost_is_dropped_too(void)
@@ -512,16 +512,16 @@ static void test_a_frame_called_back_when_the_bus_is_lost_is_dropped_too(void)
     TEST_ASSERT_TRUE(can_model_begin(&frame));
     send(0x80, 1);
     can_model_lose_bus();
-    can_controller_poll(&can);
+    takt_can_controller_poll(&can);
     interrupt();
     can_model_calm();
     for (int i = 0; i < 200; i++) {
-        can_controller_poll(&can);
+        takt_can_controller_poll(&can);
         can_model_calm();
     }
-    TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
     expect_silence();
-    TEST_ASSERT_EQUAL(4, can_controller_get_counts(&can)->dropped);
+    TEST_ASSERT_EQUAL(4, takt_can_controller_get_counts(&can)->dropped);
 }
 
 static void test_without_a_controller_opening_ends_and_says_so(void)
@@ -529,11 +529,11 @@ static void test_without_a_controller_opening_ends_and_says_so(void)
     chip_model_reset();
     can_model.is_absent = true;
     TEST_ASSERT_FALSE(open_for(0, NULL));
-    TEST_ASSERT_EQUAL(CAN_ABSENT, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_ABSENT, takt_can_controller_get_state(&can));
     TEST_ASSERT_LESS_THAN(100000, chip_model_reads());
     TEST_ASSERT_FALSE(send(0x80, 1));
-    can_controller_poll(&can);
-    TEST_ASSERT_EQUAL(CAN_ABSENT, can_controller_get_state(&can));
+    takt_can_controller_poll(&can);
+    TEST_ASSERT_EQUAL(CAN_ABSENT, takt_can_controller_get_state(&can));
 }
 
 static void test_a_bus_that_is_not_idle_is_waited_for_without_standing_still(void)
@@ -542,13 +542,13 @@ static void test_a_bus_that_is_not_idle_is_waited_for_without_standing_still(voi
     can_model.bus_is_idle = false;
     TEST_ASSERT_TRUE(open_for(0, NULL));
     TEST_ASSERT_LESS_THAN(100000, chip_model_reads());
-    TEST_ASSERT_EQUAL(CAN_WAITING, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_WAITING, takt_can_controller_get_state(&can));
     TEST_ASSERT_FALSE(send(0x80, 1));
-    can_controller_poll(&can);
-    TEST_ASSERT_EQUAL(CAN_WAITING, can_controller_get_state(&can));
+    takt_can_controller_poll(&can);
+    TEST_ASSERT_EQUAL(CAN_WAITING, takt_can_controller_get_state(&can));
     can_model.bus_is_idle = true;
-    can_controller_poll(&can);
-    TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
+    takt_can_controller_poll(&can);
+    TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
     TEST_ASSERT_TRUE(send(0x80, 1));
     expect(0x80, 1);
 }
@@ -559,11 +559,11 @@ static void test_errors_are_counted_by_their_code(void)
 
     can_model_set_errors(3, 128, 7);
     for (int i = 0; i < 5; i++)
-        can_controller_poll(&can); /* the same error is counted once */
-    can_hardware_get_errors(&sending, &receiving);
+        takt_can_controller_poll(&can); /* the same error is counted once */
+    takt_can_hardware_get_errors(&sending, &receiving);
     TEST_ASSERT_EQUAL(128, sending);
     TEST_ASSERT_EQUAL(7, receiving);
-    TEST_ASSERT_EQUAL(1, can_controller_get_counts(&can)->error[3]);
+    TEST_ASSERT_EQUAL(1, takt_can_controller_get_counts(&can)->error[3]);
 }
 
 int main(void)

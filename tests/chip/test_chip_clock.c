@@ -23,7 +23,7 @@ static void test_every_crystal_of_whole_megahertz_makes_168(void)
     for (uint32_t mhz = 4; mhz <= 26; mhz++) {
         chip_model_reset();
         clock_model.crystal_hz = mhz * 1000000U;
-        clock_start(&clock, mhz * 1000000U);
+        takt_clock_start(&clock, mhz * 1000000U);
         TEST_ASSERT_EQUAL(CLOCK_CRYSTAL, clock.source);
         TEST_ASSERT_EQUAL(168000000, clock_model_core_hz());
         TEST_ASSERT_EQUAL(clock_model_core_hz(), clock.core_hz);
@@ -35,7 +35,7 @@ static void test_every_crystal_of_whole_megahertz_makes_168(void)
 static void test_without_a_crystal_the_chip_runs_at_168_on_its_own_oscillator(void)
 {
     clock_model.crystal_hz = 0;
-    clock_start(&clock, 8000000);
+    takt_clock_start(&clock, 8000000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
     TEST_ASSERT_EQUAL(168000000, clock_model_core_hz());
     TEST_ASSERT_LESS_THAN(1000000, chip_model_reads());
@@ -44,7 +44,7 @@ static void test_without_a_crystal_the_chip_runs_at_168_on_its_own_oscillator(vo
 static void test_when_nothing_locks_the_chip_runs_at_16(void)
 {
     clock_model.pll_locks = false;
-    clock_start(&clock, 8000000);
+    takt_clock_start(&clock, 8000000);
     TEST_ASSERT_EQUAL(CLOCK_SLOW, clock.source);
     TEST_ASSERT_EQUAL(16000000, clock_model_core_hz());
     TEST_ASSERT_EQUAL(16000000, clock_model_bus1_hz());
@@ -54,7 +54,7 @@ static void test_when_nothing_locks_the_chip_runs_at_16(void)
 static void test_when_the_core_does_not_take_the_pll_it_stays_at_16(void)
 {
     clock_model.switches = false;
-    clock_start(&clock, 8000000);
+    takt_clock_start(&clock, 8000000);
     TEST_ASSERT_EQUAL(CLOCK_SLOW, clock.source);
     TEST_ASSERT_EQUAL(16000000, clock.core_hz);
 }
@@ -62,17 +62,17 @@ static void test_when_the_core_does_not_take_the_pll_it_stays_at_16(void)
 static void test_a_chip_whose_clock_control_answers_nothing_still_comes_up(void)
 {
     clock_model.is_dead = true;
-    clock_start(&clock, 8000000);
+    takt_clock_start(&clock, 8000000);
     TEST_ASSERT_EQUAL(CLOCK_SLOW, clock.source);
     TEST_ASSERT_LESS_THAN(1000000, chip_model_reads());
 }
 
 static void test_a_crystal_that_does_not_divide_is_not_used(void)
 {
-    clock_start(&clock, 8192000);
+    takt_clock_start(&clock, 8192000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
     chip_model_reset();
-    clock_start(&clock, 30000000);
+    takt_clock_start(&clock, 30000000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
 }
 
@@ -80,7 +80,7 @@ static bool program_word(uint32_t offset)
 {
     static const uint8_t word[FLASH_WORD_BYTES] = {0};
     struct flash flash;
-    const struct flash_port port = flash_get_port(&flash, flash_model_memory);
+    const struct flash_port port = takt_flash_get_port(&flash, flash_model_memory);
 
     return port.program(port.context, 0, offset, word, 1);
 }

@@ -40,42 +40,42 @@ void tearDown(void)
 
 static void test_widths_are_the_torque_in_its_direction(void)
 {
-    TEST_ASSERT_EQUAL_UINT32(COUNTS, pwm_open(TIMER_HZ, 20000));
-    pwm_set(1000);
+    TEST_ASSERT_EQUAL_UINT32(COUNTS, takt_pwm_open(TIMER_HZ, 20000));
+    takt_pwm_set(1000);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 0);
-    pwm_arm(true);
+    takt_pwm_arm(true);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 1000.0 / COUNTS);
-    pwm_set(-2000);
+    takt_pwm_set(-2000);
     TEST_ASSERT_TRUE(timer_model_get_torque() == -2000.0 / COUNTS);
-    pwm_set(COUNTS);
+    takt_pwm_set(COUNTS);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 1);
-    pwm_set(-COUNTS);
+    takt_pwm_set(-COUNTS);
     TEST_ASSERT_TRUE(timer_model_get_torque() == -1);
-    pwm_set(0);
+    takt_pwm_set(0);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 0);
-    pwm_set(5);
-    pwm_arm(false);
+    takt_pwm_set(5);
+    takt_pwm_arm(false);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 0);
 }
 
 static void test_a_power_stage_that_fails_ends_the_torque_until_it_is_armed_again(void)
 {
-    (void)pwm_open(TIMER_HZ, 20000);
-    pwm_set(1000);
-    pwm_arm(true);
-    TEST_ASSERT_FALSE(pwm_is_broken());
+    (void)takt_pwm_open(TIMER_HZ, 20000);
+    takt_pwm_set(1000);
+    takt_pwm_arm(true);
+    TEST_ASSERT_FALSE(takt_pwm_is_broken());
     timer_model_hold_break(true);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 0);
-    TEST_ASSERT_TRUE(pwm_is_broken());
+    TEST_ASSERT_TRUE(takt_pwm_is_broken());
     timer_model_hold_break(false);
-    pwm_set(1200);
-    TEST_ASSERT_TRUE(timer_model_get_torque() == 0 && pwm_is_broken());
-    pwm_arm(true);
+    takt_pwm_set(1200);
+    TEST_ASSERT_TRUE(timer_model_get_torque() == 0 && takt_pwm_is_broken());
+    takt_pwm_arm(true);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 1200.0 / COUNTS);
-    TEST_ASSERT_FALSE(pwm_is_broken());
+    TEST_ASSERT_FALSE(takt_pwm_is_broken());
     timer_model_hold_break(true);
-    pwm_arm(true);
-    TEST_ASSERT_TRUE(timer_model_get_torque() == 0 && pwm_is_broken());
+    takt_pwm_arm(true);
+    TEST_ASSERT_TRUE(timer_model_get_torque() == 0 && takt_pwm_is_broken());
 }
 
 /* ---- encoder ---- */
@@ -85,14 +85,14 @@ static void test_it_counts_beyond_the_timers_16_bits_in_both_directions(void)
     int64_t expected = 0;
 
     srand(2);
-    quadrature_open(&encoder);
+    takt_quadrature_open(&encoder);
     for (unsigned i = 0; i < 100000; i++) {
         const int32_t way = rand() % 65535 - 32767 + (i < 50000 ? 1000 : -2000);
         const int32_t half = way > 32767 ? 32767 : way < -32767 ? -32767 : way;
 
         timer_model_turn(half);
         expected += half;
-        TEST_ASSERT_TRUE(quadrature_read(&encoder) == expected);
+        TEST_ASSERT_TRUE(takt_quadrature_read(&encoder) == expected);
     }
     TEST_ASSERT_TRUE(expected < -1000000);
 }
@@ -101,21 +101,21 @@ static void test_edges_are_told_once_with_the_count_at_which_they_were(void)
 {
     int64_t counts = 7;
 
-    quadrature_open(&encoder);
-    TEST_ASSERT_FALSE(quadrature_take_edge(&encoder, QUADRATURE_INDEX, &counts));
+    takt_quadrature_open(&encoder);
+    TEST_ASSERT_FALSE(takt_quadrature_take_edge(&encoder, QUADRATURE_INDEX, &counts));
     for (int64_t turn = 1; turn < 100; turn++) {
         timer_model_turn(9000);
         timer_model_pulse_index();
         timer_model_turn(300);
         timer_model_switch(turn % 2 != 0);
         timer_model_turn(700);
-        TEST_ASSERT_TRUE(quadrature_read(&encoder) == turn * 10000);
-        TEST_ASSERT_TRUE(quadrature_take_edge(&encoder, QUADRATURE_INDEX, &counts));
+        TEST_ASSERT_TRUE(takt_quadrature_read(&encoder) == turn * 10000);
+        TEST_ASSERT_TRUE(takt_quadrature_take_edge(&encoder, QUADRATURE_INDEX, &counts));
         TEST_ASSERT_TRUE(counts == turn * 10000 - 1000);
-        TEST_ASSERT_TRUE(quadrature_take_edge(&encoder, QUADRATURE_SWITCH, &counts));
+        TEST_ASSERT_TRUE(takt_quadrature_take_edge(&encoder, QUADRATURE_SWITCH, &counts));
         TEST_ASSERT_TRUE(counts == turn * 10000 - 700);
-        TEST_ASSERT_FALSE(quadrature_take_edge(&encoder, QUADRATURE_INDEX, &counts));
-        TEST_ASSERT_FALSE(quadrature_take_edge(&encoder, QUADRATURE_SWITCH, &counts));
+        TEST_ASSERT_FALSE(takt_quadrature_take_edge(&encoder, QUADRATURE_INDEX, &counts));
+        TEST_ASSERT_FALSE(takt_quadrature_take_edge(&encoder, QUADRATURE_SWITCH, &counts));
     }
 }
 
@@ -131,20 +131,20 @@ static void open_motor(void)
         .switches = {{GPIO_C, 0}, {GPIO_C, 1}, {GPIO_B, 1}},
     };
 
-    servo_motor_open(&motor, &config);
-    port = servo_motor_get_port(&motor);
-    timers_start_cycle(BUS_HZ, PERIOD_US);
+    takt_servo_motor_open(&motor, &config);
+    port = takt_servo_motor_get_port(&motor);
+    takt_timers_start_cycle(BUS_HZ, PERIOD_US);
 }
 
 static void test_a_torque_is_its_part_of_the_whole_one(void)
 {
     open_motor();
-    servo_motor_arm(&motor, true);
+    takt_servo_motor_arm(&motor, true);
     (void)port.turn(port.context, 5000, PERIOD_S);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 0.25);
     (void)port.turn(port.context, -1e6, PERIOD_S);
     TEST_ASSERT_TRUE(timer_model_get_torque() == -1);
-    servo_motor_arm(&motor, false);
+    takt_servo_motor_arm(&motor, false);
     TEST_ASSERT_TRUE(timer_model_get_torque() == 0);
 }
 
@@ -164,11 +164,11 @@ static void test_a_step_ends_with_the_timer_and_says_where_the_encoder_is_then(v
     TEST_ASSERT_TRUE(port.turn(port.context, 0, PERIOD_S) == -0.5);
     port.sense(port.context, 0, &sense);
     TEST_ASSERT_TRUE(sense.encoder_mm == -0.5 && sense.torque_ratio == 1 && sense.inputs == 0);
-    TEST_ASSERT_FALSE(servo_motor_take_late(&motor));
+    TEST_ASSERT_FALSE(takt_servo_motor_take_late(&motor));
     timer_model_hurry();
     (void)port.turn(port.context, 0, PERIOD_S);
-    TEST_ASSERT_TRUE(servo_motor_take_late(&motor));
-    TEST_ASSERT_FALSE(servo_motor_take_late(&motor));
+    TEST_ASSERT_TRUE(takt_servo_motor_take_late(&motor));
+    TEST_ASSERT_FALSE(takt_servo_motor_take_late(&motor));
 }
 
 /* Down over the home switch and the index pulse, and onto the lower limit. */
@@ -272,8 +272,8 @@ static void start_drive(void)
     memset(&mechanics, 0, sizeof mechanics);
     open_motor();
     timer_model_set_tick(move, NULL);
-    servo_init(&servo, &config, NULL, &bus, &port);
-    servo_boot(&servo);
+    takt_servo_init(&servo, &config, NULL, &bus, &port);
+    takt_servo_boot(&servo);
 }
 
 static void take(uint16_t id, uint8_t length, uint32_t low)
@@ -282,7 +282,7 @@ static void take(uint16_t id, uint8_t length, uint32_t low)
 
     for (unsigned i = 0; i < 4; i++)
         frame.data[i] = (uint8_t)(low >> 8 * i);
-    servo_on_frame(&servo, &frame);
+    takt_servo_on_frame(&servo, &frame);
 }
 
 static void control(uint16_t word, int8_t mode)
@@ -296,15 +296,15 @@ static void enable(int8_t mode)
     control(6, mode);
     control(7, mode);
     control(15, mode);
-    TEST_ASSERT_EQUAL(CIA402_ENABLED, servo_get_state(&servo));
-    servo_motor_arm(&motor, true);
+    TEST_ASSERT_EQUAL(CIA402_ENABLED, takt_servo_get_state(&servo));
+    takt_servo_motor_arm(&motor, true);
 }
 
 static void step(unsigned steps)
 {
     for (unsigned i = 0; i < steps; i++) {
-        servo_step(&servo, PERIOD_US * 1000U);
-        TEST_ASSERT_FALSE(servo_motor_take_late(&motor));
+        takt_servo_step(&servo, PERIOD_US * 1000U);
+        TEST_ASSERT_FALSE(takt_servo_motor_take_late(&motor));
     }
 }
 
@@ -335,7 +335,7 @@ static void test_a_drive_follows_its_targets(void)
     go_to(mechanics.at_mm, 12.345, 300);
     go_to(12.345, 12.345, 300);
     TEST_ASSERT_TRUE(fabs(mechanics.at_mm - 12.345) <= 2 * STEP_MM);
-    TEST_ASSERT_EQUAL(CIA402_ENABLED, servo_get_state(&servo));
+    TEST_ASSERT_EQUAL(CIA402_ENABLED, takt_servo_get_state(&servo));
 }
 
 /* Methods 34, at the index pulse above, and 19, at the edge of the home switch. */
@@ -347,16 +347,16 @@ static void home(int8_t method, double home_mm)
     move_to(130);
     mechanics.at_mm = 0.13;
     (void)port.turn(port.context, 0, PERIOD_S);
-    servo_loop_look(&servo.loop);
-    TEST_ASSERT_TRUE(servo_write_object(&servo, 0x60980008, (uint8_t)method));
+    takt_servo_loop_look(&servo.loop);
+    TEST_ASSERT_TRUE(takt_servo_write_object(&servo, 0x60980008, (uint8_t)method));
     enable(6);
     control(31, 6);
     for (unsigned i = 0; i < 40000 && (status & 0x3400) != 0x1400; i++) {
         step(1);
-        (void)servo_read_object(&servo, 0x60410010, &status);
+        (void)takt_servo_read_object(&servo, 0x60410010, &status);
     }
     step(2000);
-    TEST_ASSERT_TRUE(servo_read_object(&servo, 0x60640020, &actual));
+    TEST_ASSERT_TRUE(takt_servo_read_object(&servo, 0x60640020, &actual));
     TEST_ASSERT_DOUBLE_WITHIN(1.5 * STEP_MM, (double)mechanics.counts * STEP_MM - home_mm,
                               (int32_t)actual / 1000.0);
 }
@@ -372,11 +372,11 @@ static void test_a_break_is_told_and_ends_the_torque(void)
     start_drive();
     enable(8);
     step(100);
-    TEST_ASSERT_FALSE(servo_motor_has_failed(&motor));
+    TEST_ASSERT_FALSE(takt_servo_motor_has_failed(&motor));
     timer_model_hold_break(true);
-    TEST_ASSERT_TRUE(servo_motor_has_failed(&motor));
-    servo_motor_arm(&motor, false);
-    TEST_ASSERT_FALSE(servo_motor_has_failed(&motor));
+    TEST_ASSERT_TRUE(takt_servo_motor_has_failed(&motor));
+    takt_servo_motor_arm(&motor, false);
+    TEST_ASSERT_FALSE(takt_servo_motor_has_failed(&motor));
 }
 
 int main(void)

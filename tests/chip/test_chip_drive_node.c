@@ -24,9 +24,9 @@ static unsigned heard_count;
 static void interrupt(void)
 {
     while (can_model_asks_sent())
-        can_controller_interrupt_sent(&node.can);
+        takt_can_controller_interrupt_sent(&node.can);
     while (can_model_asks_received())
-        can_controller_interrupt_received(&node.can);
+        takt_can_controller_interrupt_received(&node.can);
 }
 
 static void listen(void)
@@ -43,7 +43,7 @@ static void listen(void)
 static void cycles(unsigned count)
 {
     for (unsigned i = 0; i < count; i++) {
-        drive_node_cycle(&node);
+        takt_drive_node_cycle(&node);
         listen();
     }
 }
@@ -74,8 +74,8 @@ static void start(bool has_crashed)
     };
 
     heard_count = 0;
-    TEST_ASSERT_TRUE(drive_node_open(&node, &config));
-    timers_start_cycle(BUS_HZ, PERIOD_US);
+    TEST_ASSERT_TRUE(takt_drive_node_open(&node, &config));
+    takt_timers_start_cycle(BUS_HZ, PERIOD_US);
     listen();
 }
 
@@ -150,7 +150,7 @@ static void enable(void)
     say(0, 2, 1U | NODE << 8, 0);
     for (uint32_t word = 6; word <= 15; word += word == 6 ? 1 : 8)
         say(0x200 + NODE, 3, word | 8U << 16, 0);
-    TEST_ASSERT_EQUAL(CIA402_ENABLED, servo_get_state(&node.servo));
+    TEST_ASSERT_EQUAL(CIA402_ENABLED, takt_servo_get_state(&node.servo));
 }
 
 static void test_it_boots_and_answers(void)
@@ -201,9 +201,9 @@ static void test_what_is_stored_by_another_firmware_is_told(void)
     static const uint8_t foreign[] = {NODE, 0x00, 0x50, 1, 4, 1, 2, 3, 4};
 
     start(false);
-    TEST_ASSERT_TRUE(store_begin(&node.store, sizeof foreign) &&
-                     store_write(&node.store, foreign, sizeof foreign) &&
-                     store_commit(&node.store));
+    TEST_ASSERT_TRUE(takt_store_begin(&node.store, sizeof foreign) &&
+                     takt_store_write(&node.store, foreign, sizeof foreign) &&
+                     takt_store_commit(&node.store));
     start(false);
     TEST_ASSERT_EQUAL_HEX(0x6310, emergency());
     TEST_ASSERT_EQUAL_UINT32(50000, read(0x6081, 0));
@@ -236,12 +236,12 @@ static void test_a_power_stage_that_fails_is_a_fault_until_it_is_reset(void)
     timer_model_hold_break(true);
     cycles(200);
     TEST_ASSERT_EQUAL_HEX(0x5400, emergency());
-    TEST_ASSERT_EQUAL(CIA402_FAULT, servo_get_state(&node.servo));
+    TEST_ASSERT_EQUAL(CIA402_FAULT, takt_servo_get_state(&node.servo));
     timer_model_hold_break(false);
     say(0x200 + NODE, 3, 0x80 | 8U << 16, 0);
     enable();
     cycles(200);
-    TEST_ASSERT_EQUAL(CIA402_ENABLED, servo_get_state(&node.servo));
+    TEST_ASSERT_EQUAL(CIA402_ENABLED, takt_servo_get_state(&node.servo));
 }
 
 static void test_a_step_that_is_late_is_a_fault_where_there_is_torque(void)
@@ -255,7 +255,7 @@ static void test_a_step_that_is_late_is_a_fault_where_there_is_torque(void)
     timer_model_hurry();
     cycles(200);
     TEST_ASSERT_EQUAL_HEX(0x6100, emergency());
-    TEST_ASSERT_EQUAL(CIA402_FAULT, servo_get_state(&node.servo));
+    TEST_ASSERT_EQUAL(CIA402_FAULT, takt_servo_get_state(&node.servo));
 }
 
 static void test_after_a_crash_it_starts_in_fault(void)
@@ -263,7 +263,7 @@ static void test_after_a_crash_it_starts_in_fault(void)
     start(true);
     TEST_ASSERT_EQUAL_HEX(0x6100, emergency());
     cycles(200);
-    TEST_ASSERT_EQUAL(CIA402_FAULT, servo_get_state(&node.servo));
+    TEST_ASSERT_EQUAL(CIA402_FAULT, takt_servo_get_state(&node.servo));
 }
 
 int main(void)

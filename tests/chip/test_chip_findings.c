@@ -26,11 +26,12 @@ static void expect(enum takt_error code, const char *text)
     char said[DIAGNOSTIC_TEXT_MAX];
     unsigned at = 0;
 
-    TEST_ASSERT_TRUE_MESSAGE(findings_next(&found, &at, &problem), text);
-    (void)diagnostic_text(&problem, said);
+    TEST_ASSERT_TRUE_MESSAGE(takt_findings_next(&found, &at, &problem), text);
+    (void)takt_diagnostic_text(&problem, said);
     TEST_ASSERT_EQUAL_STRING(text, said);
     TEST_ASSERT_EQUAL(code, problem.code);
-    TEST_ASSERT_FALSE_MESSAGE(findings_next(&found, &at, &problem), "one problem is told as two");
+    TEST_ASSERT_FALSE_MESSAGE(takt_findings_next(&found, &at, &problem),
+                              "one problem is told as two");
 }
 
 static void test_a_board_with_everything_may_move(void)
@@ -38,7 +39,7 @@ static void test_a_board_with_everything_may_move(void)
     struct diagnostic problem;
     unsigned at = 0;
 
-    TEST_ASSERT_FALSE(findings_next(&found, &at, &problem));
+    TEST_ASSERT_FALSE(takt_findings_next(&found, &at, &problem));
 }
 
 static void test_a_missing_crystal_is_a_problem_for_can(void)
@@ -83,7 +84,7 @@ static void test_after_a_crash_somebody_has_to_look(void)
 
 static void test_without_settings_nothing_moves(void)
 {
-    diagnostic_set(&found.settings, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
+    takt_diagnostic_set(&found.settings, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
     expect(TAKT_ERROR_SETTINGS_ABSENT,
            "no settings are stored: make them with takt machine --pack and load them");
 }
@@ -93,12 +94,12 @@ static void test_all_problems_are_told_the_gravest_first(void)
     struct diagnostic problem;
     unsigned at = 0, count = 0;
 
-    diagnostic_set(&found.image, TAKT_ERROR_IMAGE_DAMAGED, 0, 0, "", 0, 7);
-    diagnostic_set(&found.settings, TAKT_ERROR_SETTINGS_CHECKSUM, 0, 0, "", 0, 0);
+    takt_diagnostic_set(&found.image, TAKT_ERROR_IMAGE_DAMAGED, 0, 0, "", 0, 7);
+    takt_diagnostic_set(&found.settings, TAKT_ERROR_SETTINGS_CHECKSUM, 0, 0, "", 0, 0);
     found.clock = CLOCK_SLOW;
     found.can = CAN_ABSENT;
     found.has_steps = false;
-    while (findings_next(&found, &at, &problem)) {
+    while (takt_findings_next(&found, &at, &problem)) {
         if (count++ == 0)
             TEST_ASSERT_EQUAL(TAKT_ERROR_IMAGE_DAMAGED, problem.code);
     }

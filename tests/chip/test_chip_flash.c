@@ -15,7 +15,7 @@ void setUp(void)
 {
     chip_model_reset();
     flash_model_blank();
-    port = flash_get_port(&flash, flash_model_memory);
+    port = takt_flash_get_port(&flash, flash_model_memory);
 }
 
 void tearDown(void)
@@ -101,7 +101,7 @@ static void test_a_controller_that_never_ends_is_given_up(void)
 
 static void test_the_watchdog_has_time_for_an_erase_and_is_short_again_afterwards(void)
 {
-    TEST_ASSERT_TRUE(watchdog_start(FLASH_WATCHDOG_MS_RUN));
+    TEST_ASSERT_TRUE(takt_watchdog_start(FLASH_WATCHDOG_MS_RUN));
     TEST_ASSERT_EQUAL(FLASH_WATCHDOG_MS_RUN, watchdog_model_ms());
     TEST_ASSERT_TRUE(port.erase(port.context, 1));
     TEST_ASSERT_EQUAL(FLASH_WATCHDOG_MS, watchdog_model_longest_ms());
@@ -111,17 +111,17 @@ static void test_the_watchdog_has_time_for_an_erase_and_is_short_again_afterward
 static void test_watchdog_times_are_those_asked_for(void)
 {
     for (uint32_t ms = 2; ms <= WATCHDOG_MS_MAX; ms += 2) {
-        TEST_ASSERT_TRUE(watchdog_start(ms));
+        TEST_ASSERT_TRUE(takt_watchdog_start(ms));
         TEST_ASSERT_EQUAL(ms, watchdog_model_ms());
     }
-    TEST_ASSERT_FALSE(watchdog_start(0));
-    TEST_ASSERT_FALSE(watchdog_start(WATCHDOG_MS_MAX + 1));
+    TEST_ASSERT_FALSE(takt_watchdog_start(0));
+    TEST_ASSERT_FALSE(takt_watchdog_start(WATCHDOG_MS_MAX + 1));
 }
 
 static void test_a_watchdog_that_does_not_answer_runs_all_the_same(void)
 {
     watchdog_model_stick();
-    TEST_ASSERT_FALSE(watchdog_start(250));
+    TEST_ASSERT_FALSE(takt_watchdog_start(250));
     TEST_ASSERT_NOT_EQUAL(0, watchdog_model_ms());
 }
 
@@ -132,20 +132,20 @@ static void test_a_crash_record_is_told_once_and_only_if_it_is_one(void)
     struct crash_memory memory;
 
     memset(&memory, 0xA5, sizeof memory); /* RAM after power-on */
-    TEST_ASSERT_FALSE(crash_take(&memory, &read));
-    crash_keep(&memory, &record);
-    TEST_ASSERT_TRUE(crash_take(&memory, &read));
+    TEST_ASSERT_FALSE(takt_crash_take(&memory, &read));
+    takt_crash_keep(&memory, &record);
+    TEST_ASSERT_TRUE(takt_crash_take(&memory, &read));
     TEST_ASSERT_EQUAL_MEMORY(&record, &read, sizeof read);
-    TEST_ASSERT_FALSE(crash_take(&memory, &read));
-    crash_keep(&memory, &record);
+    TEST_ASSERT_FALSE(takt_crash_take(&memory, &read));
+    takt_crash_keep(&memory, &record);
     memory.record.status ^= 1U;
-    TEST_ASSERT_FALSE(crash_take(&memory, &read));
+    TEST_ASSERT_FALSE(takt_crash_take(&memory, &read));
 }
 
 static void test_every_cause_of_a_crash_has_a_name(void)
 {
     for (uint32_t i = 0; i <= CRASH_CAUSES; i++)
-        TEST_ASSERT_NOT_NULL(crash_name(i));
+        TEST_ASSERT_NOT_NULL(takt_crash_name(i));
 }
 
 int main(void)

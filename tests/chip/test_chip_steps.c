@@ -23,10 +23,10 @@ static struct driver driver;
 void setUp(void)
 {
     memset(&driver, 0, sizeof driver);
-    TEST_ASSERT_TRUE(step_slots_init(&slots, CYCLE_NS / 1000U));
+    TEST_ASSERT_TRUE(takt_step_slots_init(&slots, CYCLE_NS / 1000U));
     TEST_ASSERT_EQUAL(400, slots.slots);
     memset(levels, 0xFF, sizeof levels);
-    step_slots_begin(&slots, levels);
+    takt_step_slots_begin(&slots, levels);
 }
 
 void tearDown(void)
@@ -60,10 +60,10 @@ static void drive(uint16_t level)
 
 static void end_cycle(void)
 {
-    step_slots_take(&slots);
+    takt_step_slots_take(&slots);
     for (unsigned i = 0; i < slots.slots; i++)
         drive(levels[i]);
-    step_slots_begin(&slots, levels);
+    takt_step_slots_begin(&slots, levels);
 }
 
 static bool step(uint32_t time_ns, unsigned axes, unsigned direction)
@@ -71,7 +71,7 @@ static bool step(uint32_t time_ns, unsigned axes, unsigned direction)
     const struct step_pulse pulse = {
         .time_ns = time_ns, .axes = (uint8_t)axes, .direction = (uint8_t)direction};
 
-    return step_slots_add(&slots, &pulse);
+    return takt_step_slots_add(&slots, &pulse);
 }
 
 static void test_a_step_comes_two_slots_after_its_time(void)
@@ -152,12 +152,12 @@ static void test_random_steps_all_arrive_with_their_directions_in_time(void)
 
 static void test_cycles_that_are_too_long_or_no_whole_slots_are_refused(void)
 {
-    TEST_ASSERT_TRUE(step_slots_init(&slots, 2000));
-    TEST_ASSERT_TRUE(step_slots_init(&slots, 100));
-    TEST_ASSERT_FALSE(step_slots_init(&slots, 2500));
-    TEST_ASSERT_FALSE(step_slots_init(&slots, 101));
-    TEST_ASSERT_FALSE(step_slots_init(&slots, 0));
-    TEST_ASSERT_FALSE(step_slots_init(&slots, 5));
+    TEST_ASSERT_TRUE(takt_step_slots_init(&slots, 2000));
+    TEST_ASSERT_TRUE(takt_step_slots_init(&slots, 100));
+    TEST_ASSERT_FALSE(takt_step_slots_init(&slots, 2500));
+    TEST_ASSERT_FALSE(takt_step_slots_init(&slots, 101));
+    TEST_ASSERT_FALSE(takt_step_slots_init(&slots, 0));
+    TEST_ASSERT_FALSE(takt_step_slots_init(&slots, 5));
 }
 
 int main(void)

@@ -45,7 +45,7 @@ void setUp(void)
     chip_model_reset();
     heard_count = 0;
     now_us = 0xFFFFFF00U; /* wraps within the test */
-    TEST_ASSERT_TRUE(usart_open(&usart, &config));
+    TEST_ASSERT_TRUE(takt_usart_open(&usart, &config));
 }
 
 void tearDown(void)
@@ -57,7 +57,7 @@ void tearDown(void)
 static void interrupt(void)
 {
     for (int i = 0; i < 4 && usart_model_asks(); i++)
-        usart_interrupt(&usart, now_us);
+        takt_usart_interrupt(&usart, now_us);
     TEST_ASSERT_FALSE_MESSAGE(usart_model_asks(), "an interrupt is never served");
 }
 
@@ -68,7 +68,7 @@ static void run(unsigned characters)
         now_us += 95;
         usart_model_shift();
         interrupt();
-        usart_poll(&usart, now_us);
+        takt_usart_poll(&usart, now_us);
         interrupt();
     }
 }
@@ -100,13 +100,13 @@ static void test_rates_are_within_two_percent_or_refused(void)
         const struct usart_config config = config_for(rates[i], USART_PARITY_NONE);
 
         chip_model_reset();
-        TEST_ASSERT_TRUE(usart_open(&usart, &config));
+        TEST_ASSERT_TRUE(takt_usart_open(&usart, &config));
         TEST_ASSERT_DOUBLE_WITHIN(0.02 * rates[i], rates[i],
                                   (double)CLOCK_HZ / usart_model_divider());
     }
-    TEST_ASSERT_FALSE(usart_open(&usart, &(struct usart_config){.clock_hz = CLOCK_HZ}));
+    TEST_ASSERT_FALSE(takt_usart_open(&usart, &(struct usart_config){.clock_hz = CLOCK_HZ}));
     TEST_ASSERT_FALSE(
-        usart_open(&usart, &(struct usart_config){.clock_hz = CLOCK_HZ, .bauds = 4000000}));
+        takt_usart_open(&usart, &(struct usart_config){.clock_hz = CLOCK_HZ, .bauds = 4000000}));
 }
 
 static void test_parity_makes_nine_bits(void)
@@ -116,9 +116,9 @@ static void test_parity_makes_nine_bits(void)
     const uint32_t mask = USART_CR1_PARITY | USART_CR1_9_BITS | USART_CR1_ODD;
 
     TEST_ASSERT_EQUAL_HEX(USART_CR1_PARITY | USART_CR1_9_BITS, usart_model_control() & mask);
-    TEST_ASSERT_TRUE(usart_open(&usart, &odd));
+    TEST_ASSERT_TRUE(takt_usart_open(&usart, &odd));
     TEST_ASSERT_EQUAL_HEX(mask, usart_model_control() & mask);
-    TEST_ASSERT_TRUE(usart_open(&usart, &none));
+    TEST_ASSERT_TRUE(takt_usart_open(&usart, &none));
     TEST_ASSERT_EQUAL_HEX(0, usart_model_control() & mask);
 }
 
@@ -129,7 +129,7 @@ static void test_a_reply_comes_after_the_gap_and_the_driver_is_on_for_all_of_its
     for (unsigned i = 0; i < sizeof reply; i++)
         reply[i] = (uint8_t)(i * 7);
     hear(1, 0);
-    TEST_ASSERT_TRUE(usart_send(&usart, reply, sizeof reply));
+    TEST_ASSERT_TRUE(takt_usart_send(&usart, reply, sizeof reply));
     run(GAP_US / 95 - 1);
     TEST_ASSERT_FALSE_MESSAGE(gpio_model_pin(DRIVER), "before the gap is over");
     run(sizeof reply + 20);
@@ -138,13 +138,13 @@ static void test_a_reply_comes_after_the_gap_and_the_driver_is_on_for_all_of_its
     for (unsigned i = 0; i < sizeof reply; i++)
         TEST_ASSERT_TRUE_MESSAGE(usart_model.driven[i], "the driver is off at a byte's last bit");
     TEST_ASSERT_FALSE(gpio_model_pin(DRIVER));
-    TEST_ASSERT_TRUE_MESSAGE(usart_send(&usart, reply, 1), "ready for the next");
+    TEST_ASSERT_TRUE_MESSAGE(takt_usart_send(&usart, reply, 1), "ready for the next");
 }
 
 static void test_a_byte_between_starts_the_gap_anew(void)
 {
     hear(1, 0);
-    TEST_ASSERT_TRUE(usart_send(&usart, (const uint8_t *)"x", 1));
+    TEST_ASSERT_TRUE(takt_usart_send(&usart, (const uint8_t *)"x", 1));
     run(10);
     hear(2, 0);
     run(10);
@@ -155,10 +155,10 @@ static void test_a_byte_between_starts_the_gap_anew(void)
 
 static void test_it_does_not_hear_itself(void)
 {
-    TEST_ASSERT_TRUE(usart_send(&usart, (const uint8_t *)"hello", 5));
+    TEST_ASSERT_TRUE(takt_usart_send(&usart, (const uint8_t *)"hello", 5));
     run(40);
     heard_count = 0;
-    TEST_ASSERT_TRUE(usart_send(&usart, (const uint8_t *)"hello", 5));
+    TEST_ASSERT_TRUE(takt_usart_send(&usart, (const uint8_t *)"hello", 5));
     run(2);
     TEST_ASSERT_TRUE(gpio_model_pin(DRIVER));
     hear('h', 0);
@@ -171,7 +171,7 @@ static void test_it_does_not_hear_itself(void)
 /* Its first byte and the end of the last one sent are seen in one look at the status. */
 static void test_an_answer_that_comes_at_once_is_heard(void)
 {
-    TEST_ASSERT_TRUE(usart_send(&usart, (const uint8_t *)"xy", 2));
+    TEST_ASSERT_TRUE(takt_usart_send(&usart, (const uint8_t *)"xy", 2));
     for (int i = 0; i < 100 && !gpio_model_pin(DRIVER); i++)
         run(1);
     usart_model_shift();
@@ -210,17 +210,17 @@ static void test_a_second_reply_is_refused_and_so_is_one_that_is_too_long(void)
 {
     static const uint8_t longer[USART_SEND_MAX + 1];
 
-    TEST_ASSERT_FALSE(usart_send(&usart, longer, sizeof longer));
-    TEST_ASSERT_FALSE(usart_send(&usart, longer, 0));
-    TEST_ASSERT_TRUE(usart_send(&usart, longer, 3));
-    TEST_ASSERT_FALSE(usart_send(&usart, longer, 3));
+    TEST_ASSERT_FALSE(takt_usart_send(&usart, longer, sizeof longer));
+    TEST_ASSERT_FALSE(takt_usart_send(&usart, longer, 0));
+    TEST_ASSERT_TRUE(takt_usart_send(&usart, longer, 3));
+    TEST_ASSERT_FALSE(takt_usart_send(&usart, longer, 3));
     TEST_ASSERT_EQUAL(3, usart.counts.lost);
 }
 
 static void test_a_shout_ends_even_when_the_line_is_stuck(void)
 {
     usart_model.is_stuck = true;
-    usart_shout(&usart, "help");
+    takt_usart_shout(&usart, "help");
     TEST_ASSERT_LESS_THAN(2000000, chip_model_reads());
     TEST_ASSERT_FALSE(gpio_model_pin(DRIVER));
 }
@@ -234,13 +234,13 @@ static void test_lines_of_the_log_come_out_whole_and_in_order(void)
     const uint8_t *bytes;
 
     memset(&ring, 0, sizeof ring);
-    TEST_ASSERT_TRUE(log_ring_put(&ring, "one"));
-    TEST_ASSERT_TRUE(log_ring_put(&ring, "two"));
-    TEST_ASSERT_EQUAL(7, log_ring_take(&ring, &bytes, 7));
+    TEST_ASSERT_TRUE(takt_log_ring_put(&ring, "one"));
+    TEST_ASSERT_TRUE(takt_log_ring_put(&ring, "two"));
+    TEST_ASSERT_EQUAL(7, takt_log_ring_take(&ring, &bytes, 7));
     TEST_ASSERT_EQUAL_MEMORY("one\r\ntw", bytes, 7);
-    TEST_ASSERT_EQUAL(3, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_EQUAL(3, takt_log_ring_take(&ring, &bytes, 50));
     TEST_ASSERT_EQUAL_MEMORY("o\r\n", bytes, 3);
-    TEST_ASSERT_EQUAL(0, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_EQUAL(0, takt_log_ring_take(&ring, &bytes, 50));
 }
 
 static void test_a_line_without_room_is_left_out_whole(void)
@@ -250,16 +250,16 @@ static void test_a_line_without_room_is_left_out_whole(void)
 
     memset(&ring, 0, sizeof ring);
     memset(line, 'x', LOG_RING_MAX - 1);
-    TEST_ASSERT_FALSE(log_ring_put(&ring, line));
+    TEST_ASSERT_FALSE(takt_log_ring_put(&ring, line));
     line[LOG_RING_MAX - 2] = '\0';
-    TEST_ASSERT_TRUE(log_ring_put(&ring, line));
-    TEST_ASSERT_FALSE(log_ring_put(&ring, ""));
+    TEST_ASSERT_TRUE(takt_log_ring_put(&ring, line));
+    TEST_ASSERT_FALSE(takt_log_ring_put(&ring, ""));
     TEST_ASSERT_EQUAL(2, ring.left_out);
-    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &bytes, 1));
-    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &bytes, 1));
-    TEST_ASSERT_FALSE_MESSAGE(log_ring_put(&ring, ""), "one byte may still be on its way");
-    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &bytes, 1));
-    TEST_ASSERT_TRUE(log_ring_put(&ring, ""));
+    TEST_ASSERT_EQUAL(1, takt_log_ring_take(&ring, &bytes, 1));
+    TEST_ASSERT_EQUAL(1, takt_log_ring_take(&ring, &bytes, 1));
+    TEST_ASSERT_FALSE_MESSAGE(takt_log_ring_put(&ring, ""), "one byte may still be on its way");
+    TEST_ASSERT_EQUAL(1, takt_log_ring_take(&ring, &bytes, 1));
+    TEST_ASSERT_TRUE(takt_log_ring_put(&ring, ""));
 }
 
 static void test_a_line_over_the_end_of_the_ring_comes_in_two_pieces(void)
@@ -269,13 +269,13 @@ static void test_a_line_over_the_end_of_the_ring_comes_in_two_pieces(void)
 
     memset(&ring, 0, sizeof ring);
     memset(line, 'x', LOG_RING_MAX - 4);
-    TEST_ASSERT_TRUE(log_ring_put(&ring, line));
-    TEST_ASSERT_EQUAL(LOG_RING_MAX - 2, log_ring_take(&ring, &bytes, LOG_RING_MAX));
-    TEST_ASSERT_EQUAL(0, log_ring_take(&ring, &bytes, LOG_RING_MAX));
-    TEST_ASSERT_TRUE(log_ring_put(&ring, "ab"));
-    TEST_ASSERT_EQUAL(2, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_TRUE(takt_log_ring_put(&ring, line));
+    TEST_ASSERT_EQUAL(LOG_RING_MAX - 2, takt_log_ring_take(&ring, &bytes, LOG_RING_MAX));
+    TEST_ASSERT_EQUAL(0, takt_log_ring_take(&ring, &bytes, LOG_RING_MAX));
+    TEST_ASSERT_TRUE(takt_log_ring_put(&ring, "ab"));
+    TEST_ASSERT_EQUAL(2, takt_log_ring_take(&ring, &bytes, 50));
     TEST_ASSERT_EQUAL_MEMORY("ab", bytes, 2);
-    TEST_ASSERT_EQUAL(2, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_EQUAL(2, takt_log_ring_take(&ring, &bytes, 50));
     TEST_ASSERT_EQUAL_MEMORY("\r\n", bytes, 2);
 }
 

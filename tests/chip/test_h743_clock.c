@@ -23,7 +23,7 @@ static void test_every_crystal_that_divides_800_makes_400_and_80_for_can(void)
             continue;
         chip_model_reset();
         clock_model.crystal_hz = mhz * 1000000U;
-        clock_start(&clock, mhz * 1000000U);
+        takt_clock_start(&clock, mhz * 1000000U);
         TEST_ASSERT_EQUAL(CLOCK_CRYSTAL, clock.source);
         TEST_ASSERT_EQUAL(400000000, clock_model_core_hz());
         TEST_ASSERT_EQUAL(clock_model_core_hz(), clock.core_hz);
@@ -37,7 +37,7 @@ static void test_every_crystal_that_divides_800_makes_400_and_80_for_can(void)
 static void test_without_a_crystal_the_chip_runs_at_400_on_its_own_oscillator(void)
 {
     clock_model.crystal_hz = 0;
-    clock_start(&clock, 25000000);
+    takt_clock_start(&clock, 25000000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
     TEST_ASSERT_EQUAL(400000000, clock_model_core_hz());
     TEST_ASSERT_LESS_THAN(3000000, chip_model_reads());
@@ -46,7 +46,7 @@ static void test_without_a_crystal_the_chip_runs_at_400_on_its_own_oscillator(vo
 static void test_when_nothing_locks_the_chip_runs_at_64(void)
 {
     clock_model.pll_locks = false;
-    clock_start(&clock, 25000000);
+    takt_clock_start(&clock, 25000000);
     TEST_ASSERT_EQUAL(CLOCK_SLOW, clock.source);
     TEST_ASSERT_EQUAL(64000000, clock_model_core_hz());
     TEST_ASSERT_EQUAL(64000000, clock_model_bus1_hz());
@@ -56,7 +56,7 @@ static void test_when_nothing_locks_the_chip_runs_at_64(void)
 static void test_when_the_core_does_not_take_the_pll_it_stays_at_64(void)
 {
     clock_model.switches = false;
-    clock_start(&clock, 25000000);
+    takt_clock_start(&clock, 25000000);
     TEST_ASSERT_EQUAL(CLOCK_SLOW, clock.source);
     TEST_ASSERT_EQUAL(64000000, clock.core_hz);
 }
@@ -64,20 +64,20 @@ static void test_when_the_core_does_not_take_the_pll_it_stays_at_64(void)
 static void test_a_chip_whose_clock_control_answers_nothing_still_comes_up(void)
 {
     clock_model.is_dead = true;
-    clock_start(&clock, 25000000);
+    takt_clock_start(&clock, 25000000);
     TEST_ASSERT_EQUAL(CLOCK_SLOW, clock.source);
     TEST_ASSERT_LESS_THAN(3000000, chip_model_reads());
 }
 
 static void test_a_crystal_that_does_not_divide_is_not_used(void)
 {
-    clock_start(&clock, 8192000);
+    takt_clock_start(&clock, 8192000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
     chip_model_reset();
-    clock_start(&clock, 13000000);
+    takt_clock_start(&clock, 13000000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
     chip_model_reset();
-    clock_start(&clock, 50000000);
+    takt_clock_start(&clock, 50000000);
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
 }
 

@@ -12,9 +12,9 @@ static struct can_port port;
 static bool open_at(uint32_t nominal, uint32_t data)
 {
     const struct can_config config = {.clock_hz = can_model_clock_hz, .rates = {nominal, data}};
-    const bool good = can_controller_open(&can, &config);
+    const bool good = takt_can_controller_open(&can, &config);
 
-    port = can_controller_get_port(&can);
+    port = takt_can_controller_get_port(&can);
     return good;
 }
 
@@ -22,7 +22,7 @@ void setUp(void)
 {
     chip_model_reset();
     TEST_ASSERT_TRUE(open_at(1000000, 5000000));
-    TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
 }
 
 void tearDown(void)
@@ -57,11 +57,11 @@ static void test_frames_of_every_length_are_sent_as_fd_with_fast_data(void)
 
         TEST_ASSERT_TRUE(port.send(port.context, &frame));
         TEST_ASSERT_TRUE(can_model_transfer(&sent));
-        can_controller_interrupt_sent(&can);
+        takt_can_controller_interrupt_sent(&can);
         check_same(&frame, &sent);
         TEST_ASSERT_TRUE(fdcan_model.sent_fd && fdcan_model.sent_fast);
     }
-    TEST_ASSERT_EQUAL(sizeof lengths, can_controller_get_counts(&can)->sent);
+    TEST_ASSERT_EQUAL(sizeof lengths, takt_can_controller_get_counts(&can)->sent);
 }
 
 static void test_frames_of_every_length_are_received_with_zeros_behind_them(void)
@@ -73,7 +73,7 @@ static void test_frames_of_every_length_are_received_with_zeros_behind_them(void
 
         memset(&received, 0x55, sizeof received);
         TEST_ASSERT_TRUE(can_model_hear(&frame));
-        can_controller_interrupt_received(&can);
+        takt_can_controller_interrupt_received(&can);
         TEST_ASSERT_TRUE(port.receive(port.context, &received));
         check_same(&frame, &received);
     }
@@ -144,19 +144,19 @@ static void test_a_data_rate_that_cannot_be_made_is_named(void)
     const struct can_rates odd = {1000000, 3000000}, fast = {1000000, 20000000};
     const struct can_rates none = {810000, 5000000};
 
-    TEST_ASSERT_EQUAL(3000000, can_hardware_find_impossible(can_model_clock_hz, &odd));
-    TEST_ASSERT_EQUAL(20000000, can_hardware_find_impossible(can_model_clock_hz, &fast));
-    TEST_ASSERT_EQUAL(810000, can_hardware_find_impossible(can_model_clock_hz, &none));
+    TEST_ASSERT_EQUAL(3000000, takt_can_hardware_find_impossible(can_model_clock_hz, &odd));
+    TEST_ASSERT_EQUAL(20000000, takt_can_hardware_find_impossible(can_model_clock_hz, &fast));
+    TEST_ASSERT_EQUAL(810000, takt_can_hardware_find_impossible(can_model_clock_hz, &none));
     TEST_ASSERT_FALSE(open_at(1000000, 3000000));
-    TEST_ASSERT_EQUAL(CAN_ABSENT, can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(CAN_ABSENT, takt_can_controller_get_state(&can));
 }
 
 static void test_errors_in_fast_data_are_counted_by_their_code(void)
 {
     fdcan_model_set_data_error(6);
     for (int i = 0; i < 5; i++)
-        can_controller_poll(&can);
-    TEST_ASSERT_EQUAL(1, can_controller_get_counts(&can)->error[6]);
+        takt_can_controller_poll(&can);
+    TEST_ASSERT_EQUAL(1, takt_can_controller_get_counts(&can)->error[6]);
 }
 
 static void test_after_bus_off_frames_are_fd_as_before(void)
@@ -167,11 +167,11 @@ static void test_after_bus_off_frames_are_fd_as_before(void)
     TEST_ASSERT_TRUE(port.send(port.context, &frame));
     can_model_lose_bus();
     for (int i = 0; i < 100; i++) {
-        can_controller_poll(&can);
+        takt_can_controller_poll(&can);
         can_model_calm();
     }
-    TEST_ASSERT_EQUAL(CAN_ON, can_controller_get_state(&can));
-    TEST_ASSERT_EQUAL(1, can_controller_get_counts(&can)->dropped);
+    TEST_ASSERT_EQUAL(CAN_ON, takt_can_controller_get_state(&can));
+    TEST_ASSERT_EQUAL(1, takt_can_controller_get_counts(&can)->dropped);
     TEST_ASSERT_FALSE(can_model_begin(&sent));
     TEST_ASSERT_TRUE(port.send(port.context, &frame));
     TEST_ASSERT_TRUE(can_model_transfer(&sent));

@@ -15,7 +15,7 @@ void setUp(void)
 {
     chip_model_reset();
     flash_model_blank();
-    port = flash_get_port(&flash, flash_model_memory);
+    port = takt_flash_get_port(&flash, flash_model_memory);
 }
 
 void tearDown(void)
@@ -35,7 +35,7 @@ static bool program(unsigned sector, uint32_t offset)
 static void test_sectors_that_are_sound_are_left_as_they_are(void)
 {
     TEST_ASSERT_TRUE(program(0, 0) && program(1, 0x1FFE0));
-    port = flash_get_port(&flash, flash_model_memory);
+    port = takt_flash_get_port(&flash, flash_model_memory);
     TEST_ASSERT_EQUAL(0, flash_model.erased);
     TEST_ASSERT_EQUAL('a', port.sector[0][0]);
     TEST_ASSERT_EQUAL('a', port.sector[1][0x1FFFF]);
@@ -47,7 +47,7 @@ static void test_a_sector_with_a_word_beyond_repair_is_erased_and_the_other_is_n
         setUp();
         TEST_ASSERT_TRUE(program(1 - torn, 0));
         h743_flash_model_tear(torn * FLASH_SECTOR_BYTES + 0x1FFE0);
-        port = flash_get_port(&flash, flash_model_memory);
+        port = takt_flash_get_port(&flash, flash_model_memory);
         TEST_ASSERT_EQUAL(1, flash_model.erased);
         TEST_ASSERT_EACH_EQUAL_HEX8(0xFF, port.sector[torn], FLASH_SECTOR_BYTES);
         TEST_ASSERT_EQUAL('a', port.sector[1 - torn][0]);

@@ -193,7 +193,7 @@ void timer_model_turn(int32_t counts)
         tim3[CNT] = (tim3[CNT] + (uint32_t)counts) & tim3[ARR];
 }
 
-/* Of channel 3 or 4, where it is an input and looks at this edge. */
+/* Captures on channel 3 or 4, where it is an input and looks at this edge. */
 static void capture(unsigned channel, bool rises)
 {
     const unsigned place = channel - 3U;

@@ -11,7 +11,7 @@ double timer_model_get_torque(void);
 /* The pin of the break is low. */
 void timer_model_hold_break(bool low);
 
-/* The encoder turns by so many edges of its tracks. */
+/* The encoder turns by this many edges of its tracks. */
 void timer_model_turn(int32_t counts);
 
 /* The index pulse rises and falls; the switch has an edge. */
@@ -24,7 +24,7 @@ void timer_model_set_tick(void (*call)(void *context), void *context);
 /* A tick is there before anybody waits for it. */
 void timer_model_hurry(void);
 
-/* Of port B or C. */
+/* Sets a pin of port B or C. */
 void timer_model_set_pin(char port, unsigned number, bool high);
 /* An output of port C. */
 bool timer_model_pin_is_high(unsigned number);

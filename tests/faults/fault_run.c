@@ -127,12 +127,13 @@ static void take_heartbeats(struct virtual_drives_config *virtual)
 {
     static struct object_row rows[OBJECT_TABLE_MAX];
     static struct dictionary mute;
-    mute = dictionary_own;
+    mute = takt_dictionary_own;
     mute.row = rows;
     mute.count = 0;
-    for (unsigned i = 0; i < dictionary_own.count; i++)
-        if (dictionary_own.row[i].index != 0x1016 && dictionary_own.row[i].index != 0x1017)
-            rows[mute.count++] = dictionary_own.row[i];
+    for (unsigned i = 0; i < takt_dictionary_own.count; i++)
+        if (takt_dictionary_own.row[i].index != 0x1016 &&
+            takt_dictionary_own.row[i].index != 0x1017)
+            rows[mute.count++] = takt_dictionary_own.row[i];
     for (unsigned i = 0; i < DRIVES; i++)
         virtual->drive[i].dictionary = &mute;
 }
@@ -162,7 +163,7 @@ static void open_world(struct world *w, const struct fault_case *fault)
                                        .parameters = &w->parameters,
                                        .exact_path = true};
     virtual_drives_set_default(&virtual, DRIVES);
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     for (unsigned i = 0; i < DRIVES; i++)
         machine.axis[i].drive_product = VIRTUAL_DRIVE_PRODUCT;
     if (fault->machine == FAULT_HOMED) {
@@ -181,9 +182,9 @@ static void open_world(struct world *w, const struct fault_case *fault)
     virtual_drives_init(&w->drives, &w->bus, &virtual);
     for (unsigned i = 0; i < w->drives.count; i++)
         virtual_drive_inject(&w->drives.drive[i], &w->script, &w->clock);
-    parameters_clear(&w->parameters);
-    source_open_text(&config.source, &w->text, program, sizeof program - 1);
-    controller_init(&w->controller, &config);
+    takt_parameters_clear(&w->parameters);
+    takt_source_open_text(&config.source, &w->text, program, sizeof program - 1);
+    takt_controller_init(&w->controller, &config);
     w->clock.enabled_ns = INJECT_ALWAYS;
     w->fault_ns = INJECT_ALWAYS;
 }
@@ -192,10 +193,10 @@ static void cycle(struct world *w)
 {
     const struct inputs inputs = inputs_idle();
     place_faults(w);
-    controller_background(&w->controller);
-    controller_cycle(&w->controller, &inputs);
+    takt_controller_background(&w->controller);
+    takt_controller_cycle(&w->controller, &inputs);
     if (w->clock.enabled_ns == INJECT_ALWAYS &&
-        controller_get_state(&w->controller) == CONTROLLER_RUNNING)
+        takt_controller_get_state(&w->controller) == CONTROLLER_RUNNING)
         w->clock.enabled_ns = w->clock.now_ns;
     w->clock.now_ns += CYCLE_NS;
     bus_run_until(&w->bus, w->clock.now_ns);
@@ -258,11 +259,11 @@ bool fault_run(const struct fault_case *fault, struct fault_result *result)
         cycle(w);
         result->end_mm_s = 1e9 / CYCLE_NS * observe(w, result);
         note_alarm(w, result);
-        after += controller_get_state(&w->controller) >= CONTROLLER_COMPLETED;
+        after += takt_controller_get_state(&w->controller) >= CONTROLLER_COMPLETED;
     }
-    result->completed = controller_get_state(&w->controller) == CONTROLLER_COMPLETED;
-    result->alarm = *controller_get_fault(&w->controller);
+    result->completed = takt_controller_get_state(&w->controller) == CONTROLLER_COMPLETED;
+    result->alarm = *takt_controller_get_fault(&w->controller);
     if (result->alarm.code != TAKT_OK)
-        (void)diagnostic_text(&result->alarm, result->text);
+        (void)takt_diagnostic_text(&result->alarm, result->text);
     return true;
 }

@@ -3,8 +3,8 @@
  * to be built for another processor in seconds. Reads the program from the file it is given.
  */
 #include "base/fnv.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "motion/motion.h"
-#include "offset/offset.h"
 #include "plan/path.h"
 
 #include <inttypes.h>
@@ -16,11 +16,12 @@
 #define CYCLES_MAX 1000000
 
 static const struct plan_limits limits = {
-    7, {100, 60, 20}, {1000, 400, 2000}, {50000, 8000, 200000}, 1e-3, 1e-3, LAW_JERK, LANDING_SPAN};
+    7,    {100, 60, 20}, {1000, 400, 2000}, {50000, 8000, 200000},
+    1e-3, 1e-3,          RAMP_PROFILE_JERK, LANDING_SPAN};
 
 struct bench {
     struct program program;
-    struct offset offset;
+    struct cutter_compensation offset;
     struct parameters parameters;
     struct source_text text;
     struct path path;
@@ -45,16 +46,16 @@ static void begin(struct bench *b)
     struct program_config config = {.axes = limits.axes, .parameters = &b->parameters};
     struct source source;
 
-    parameters_clear(&b->parameters);
+    takt_parameters_clear(&b->parameters);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         config.travel_min[i] = -500;
         config.travel_max[i] = 500;
     }
-    source_open_text(&source, &b->text, b->bytes, b->text.length);
-    program_open(&b->program, &config, &source);
-    offset_open(&b->offset, &config);
-    path_init(&b->path, &limits, &config.start);
-    motion_init(&b->motion, &b->path, &config.start, false);
+    takt_source_open_text(&source, &b->text, b->bytes, b->text.length);
+    takt_program_open(&b->program, &config, &source);
+    takt_cutter_compensation_open(&b->offset, &config);
+    takt_path_init(&b->path, &limits, &config.start);
+    takt_motion_init(&b->motion, &b->path, &config.start, false);
 }
 
 static void read_move(struct bench *b)
@@ -62,22 +63,23 @@ static void read_move(struct bench *b)
     struct diagnostic diagnostic;
     struct move move;
 
-    if (offset_next(&b->offset, &b->program, &move, &diagnostic) == PROGRAM_MOVE) {
-        path_push(&b->path, &move);
+    if (takt_cutter_compensation_next(&b->offset, &b->program, &move, &diagnostic) ==
+        PROGRAM_MOVE) {
+        takt_path_push(&b->path, &move);
         return;
     }
     b->ended = true;
-    path_finish(&b->path);
+    takt_path_finish(&b->path);
 }
 
 static void plan(struct bench *b)
 {
-    if (motion_wanted(&b->motion) == NULL)
+    if (takt_motion_wanted(&b->motion) == NULL)
         return;
-    path_go_on(&b->path);
-    while (!b->ended && path_has_room(&b->path))
+    takt_path_go_on(&b->path);
+    while (!b->ended && takt_path_has_room(&b->path))
         read_move(b);
-    motion_build(&b->motion);
+    takt_motion_build(&b->motion);
 }
 
 static bool run(struct bench *b, uint64_t *digest)
@@ -88,9 +90,9 @@ static bool run(struct bench *b, uint64_t *digest)
 
     while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && b->motion.cycles < CYCLES_MAX) {
         plan(b);
-        result = motion_cycle(&b->motion, &as_programmed, &record);
+        result = takt_motion_cycle(&b->motion, &as_programmed, &record);
         for (unsigned i = 0; i < AXIS_LINEAR_COUNT && result == MOTION_CYCLE; i++)
-            *digest = fnv_add_double(*digest, record.cmd.at[i]);
+            *digest = takt_fnv_add_double(*digest, record.cmd.at[i]);
     }
     return result == MOTION_DONE;
 }

@@ -46,10 +46,10 @@ static enum panel_verdict order(void *context, const struct panel_order *wanted)
     (void)context;
     for (unsigned i = 0; i < wanted->count; i++) {
         const struct panel_order_item *item = &wanted->item[i];
-        const struct panel_register *row = &panel_registers[item->id];
+        const struct panel_register *row = &takt_panel_registers[item->id];
 
         require(row->states != PANEL_NEVER);
-        require(item->value >= panel_least(row) && item->value <= panel_most(row));
+        require(item->value >= takt_panel_least(row) && item->value <= panel_most(row));
         shown.value[item->id] = (uint32_t)item->value;
     }
     if (shown.value[REGISTER_FEED_OVERRIDE] == 0)
@@ -65,23 +65,23 @@ static void hear(void *context)
 }
 
 /* Bytes that a stream takes now: more or less of them. */
-static uint32_t store_room(void *context)
+static uint32_t takt_store_room(void *context)
 {
     (void)context;
     return changes * 37 % 300;
 }
 
-static bool store_begin(void *context, uint32_t size)
+static bool takt_store_begin(void *context, uint32_t size)
 {
     (void)context;
     room = size;
     return size <= STORE_SIZE;
 }
 
-static bool store_write(void *context, uint32_t offset, const uint8_t *bytes, size_t size)
+static bool takt_store_write(void *context, uint32_t offset, const uint8_t *bytes, size_t size)
 {
     require(offset <= room && size <= room - offset);
-    require(context == NULL || size <= store_room(context));
+    require(context == NULL || size <= takt_store_room(context));
     memcpy(stored + offset, bytes, size);
     changes++;
     return true;
@@ -116,7 +116,7 @@ static void check_reply(const uint8_t *pdu, size_t length, unsigned changes_befo
 static void run_tcp(struct panel_client *client, struct modbus_tcp *tcp, const uint8_t *data,
                     size_t size)
 {
-    const struct modbus_map map = panel_client_map(client);
+    const struct modbus_map map = takt_panel_client_map(client);
     enum modbus_tcp_result result = MODBUS_TCP_REPLY;
 
     while (result == MODBUS_TCP_REPLY && size > 0) {
@@ -124,12 +124,12 @@ static void run_tcp(struct panel_client *client, struct modbus_tcp *tcp, const u
         const unsigned before = changes;
         size_t length = 0;
 
-        result = modbus_tcp_take(tcp, &map, &data, &size, reply, &length);
+        result = takt_modbus_tcp_take(tcp, &map, &data, &size, reply, &length);
         if (result == MODBUS_TCP_REPLY)
             check_reply(reply + MODBUS_TCP_HEADER, length - MODBUS_TCP_HEADER, before);
     }
     if (result == MODBUS_TCP_BROKEN)
-        modbus_tcp_init(tcp);
+        takt_modbus_tcp_init(tcp);
 }
 
 static void check_line_reply(const uint8_t *reply, size_t length, unsigned changes_before)
@@ -148,12 +148,12 @@ static void run_line(struct modbus_rtu *rtu, const uint8_t *data, size_t size, u
         const unsigned before = changes;
 
         *now_us += 100;
-        check_line_reply(reply, modbus_rtu_take(rtu, data[i], *now_us, reply), before);
+        check_line_reply(reply, takt_modbus_rtu_take(rtu, data[i], *now_us, reply), before);
     }
     const unsigned before = changes;
 
     *now_us += GAP_US;
-    check_line_reply(reply, modbus_rtu_idle(rtu, *now_us, reply), before);
+    check_line_reply(reply, takt_modbus_rtu_idle(rtu, *now_us, reply), before);
 }
 
 static void run_tcp_request(struct panel_client *client, struct modbus_tcp *tcp, const uint8_t *pdu,
@@ -173,7 +173,7 @@ static void run_line_request(struct modbus_rtu *rtu, const uint8_t *pdu, size_t 
     uint16_t crc;
 
     memcpy(frame + 1, pdu, size);
-    crc = crc16(frame, size + 1);
+    crc = takt_crc16(frame, size + 1);
     frame[size + 1] = (uint8_t)crc;
     frame[size + 2] = (uint8_t)(crc >> 8);
     run_line(rtu, frame, size + 3, now_us);
@@ -191,14 +191,14 @@ struct world {
 static struct panel_store make_store(bool streams)
 {
     return (struct panel_store){
-        .begin = store_begin,
-        .write = store_write,
+        .begin = takt_store_begin,
+        .write = takt_store_write,
         .prepare = store_done,
         .place = store_done,
-        .begin_stream = streams ? store_begin : NULL,
+        .begin_stream = streams ? takt_store_begin : NULL,
         .end_stream = streams ? store_end : NULL,
         .why = store_why,
-        .room = streams ? store_room : NULL,
+        .room = streams ? takt_store_room : NULL,
         .context = streams ? &room : NULL,
     };
 }
@@ -217,11 +217,11 @@ static void open_world(struct world *world, uint32_t password, bool streams)
     shown.value[REGISTER_STATE] = PANEL_IDLE;
     shown.value[REGISTER_FEED_OVERRIDE] = 1000;
     room = 0;
-    panel_init(&world->panel, &config);
-    panel_client_enter(&world->client, &world->panel);
-    modbus_tcp_init(&world->tcp);
-    map = panel_client_map(&world->client);
-    modbus_rtu_init(&world->rtu, &map, UNIT, GAP_US);
+    takt_panel_init(&world->panel, &config);
+    takt_panel_client_enter(&world->client, &world->panel);
+    takt_modbus_tcp_init(&world->tcp);
+    map = takt_panel_client_map(&world->client);
+    takt_modbus_rtu_init(&world->rtu, &map, UNIT, GAP_US);
     world->now_us = 0;
 }
 

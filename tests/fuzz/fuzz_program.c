@@ -7,8 +7,8 @@
  * are read, so that one corpus serves for all.
  */
 #include "base/maths.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "motion/motion.h"
-#include "offset/offset.h"
 #include "program/program.h"
 
 #include <stdio.h>
@@ -18,11 +18,11 @@
 #define TRAVEL_MM    500.0
 #define TRAVEL_RAD   (20.0 * MATHS_PI)
 #define TRAVEL_SLACK 1e-5
-/* A loop may make moves for ever; so many are enough. */
+/* A loop may make moves for ever; this many are enough. */
 #define MOVES_MAX 1000
-/* Of errors there are never more than lines, and lines repeat only in loops. */
+/* There are never more errors than lines, and lines repeat only in loops. */
 #define ERRORS_MAX 1000
-/* After so many bytes the source fails: of loops that move nothing, and that is a fault of its own to be tried. */
+/* After this many bytes the source fails, in loops that move nothing: that is a fault of its own to be tried. */
 #define READ_MAX 200000U
 
 /* Called by libFuzzer with every input. */
@@ -43,7 +43,7 @@ struct fuzz_source {
 };
 
 static struct program program;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct parameters parameters;
 /* A program may be slow: what its plan is run for at most. */
 #define ROOM_TRIES    20
@@ -117,21 +117,21 @@ static void check_diagnostic(const struct diagnostic *d)
     CHECK(d->code < TAKT_OK && d->code >= -(int)TAKT_ERROR_TOTAL);
     CHECK(d->line > 0 || d->code == TAKT_ERROR_FROM_LINE_MISSED);
     CHECK(d->column <= column_max);
-    CHECK(diagnostic_text(d, text) > 0);
+    CHECK(takt_diagnostic_text(d, text) > 0);
 }
 
-/* Runs what has been planned for so many cycles, or to its end. */
+/* Runs what has been planned for this many cycles, or to its end. */
 static void run_cycles(unsigned cycles)
 {
     const struct motion_operator as_programmed = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
     struct cycle_record record;
 
     for (unsigned i = 0; i < cycles; i++) {
-        if (motion_wanted(&motion) != NULL) {
-            path_go_on(&path);
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_path_go_on(&path);
+            takt_motion_build(&motion);
         }
-        if (motion_cycle(&motion, &as_programmed, &record) != MOTION_CYCLE) {
+        if (takt_motion_cycle(&motion, &as_programmed, &record) != MOTION_CYCLE) {
             return;
         }
         for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
@@ -152,29 +152,29 @@ static void open_path(const struct program_config *config)
         limits.acceleration_mm_s2[axis] = 2000.0 * unit;
         limits.jerk_mm_s3[axis] = 50000.0 * unit;
     }
-    path_init(&path, &limits, &config->start);
-    motion_init(&motion, &path, &config->start, false);
+    takt_path_init(&path, &limits, &config->start);
+    takt_motion_init(&motion, &path, &config->start, false);
 }
 
 static bool wait_for_room(void)
 {
-    for (unsigned i = 0; i < ROOM_TRIES && !path_has_room(&path); i++) {
+    for (unsigned i = 0; i < ROOM_TRIES && !takt_path_has_room(&path); i++) {
         run_cycles(CYCLES_A_TRY);
     }
-    return path_has_room(&path);
+    return takt_path_has_room(&path);
 }
 
 static void plan_move(const struct move *move)
 {
     if (wait_for_room()) {
-        path_push(&path, move);
+        takt_path_push(&path, move);
     }
 }
 
 static void plan_rest(void)
 {
     if (wait_for_room()) {
-        path_finish(&path);
+        takt_path_finish(&path);
     }
     run_cycles(CYCLES_AT_END);
 }
@@ -183,7 +183,8 @@ static void check_warnings(void)
 {
     struct diagnostic warning;
 
-    while (program_warning(&program, &warning) || offset_warning(&offset, &warning)) {
+    while (takt_program_warning(&program, &warning) ||
+           takt_cutter_compensation_warning(&offset, &warning)) {
         check_diagnostic(&warning);
     }
 }
@@ -202,7 +203,7 @@ static void answer(const struct move *asked, const struct point *from)
         a.contact_at.at[axis] = 0.5 * (from->at[axis] + asked->end.at[axis]);
         a.rest_at.at[axis] = 0.4 * from->at[axis] + 0.6 * asked->end.at[axis];
     }
-    offset_answer(&offset, &program, &a);
+    takt_cutter_compensation_answer(&offset, &program, &a);
 }
 
 /* Where a motion leads, and what was asked of the world last. */
@@ -234,7 +235,8 @@ static void read_program(struct point at)
     unsigned errors = 0;
 
     while (moves < MOVES_MAX && errors < ERRORS_MAX &&
-           (result = offset_next(&offset, &program, &move, &error)) != PROGRAM_END) {
+           (result = takt_cutter_compensation_next(&offset, &program, &move, &error)) !=
+               PROGRAM_END) {
         if (result == PROGRAM_ERROR) {
             check_diagnostic(&error);
             errors++;
@@ -323,10 +325,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     column_max = longest_line(data, size) + 1;
     set_config(&config, &choice);
-    parameters_clear(&parameters);
-    source_open_text(&text.source, &text.text, (const char *)data, size);
-    program_open(&program, &config, &source);
-    offset_open(&offset, &config);
+    takt_parameters_clear(&parameters);
+    takt_source_open_text(&text.source, &text.text, (const char *)data, size);
+    takt_program_open(&program, &config, &source);
+    takt_cutter_compensation_open(&offset, &config);
     open_path(&config);
     read_program(config.start);
     return 0;

@@ -12,7 +12,7 @@ the two need not agree on them.
 
 A golden is a NAME.canon, which must agree, or a NAME.error, which LinuxCNC must refuse on the same line. Where takt
 differs on purpose, NAME.linuxcnc says what LinuxCNC does; that must be so, and must be another thing than what takt
-does, and a table of differences, in firmware/program/README.md or firmware/offset/README.md, must name NAME. Nor may
+does, and a table of differences, in firmware/program/README.md or firmware/cutter_compensation/README.md, must name NAME. Nor may
 the tables name anything else.
 
 Exit status: 0 all agree, 1 something differs, 77 LinuxCNC's module is not installed.

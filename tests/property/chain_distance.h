@@ -35,8 +35,8 @@ static inline double chain_distance_across(const struct curve *c, const struct p
         double along = 0.0;
         double square = 0.0;
 
-        curve_point(c, s, &on);
-        curve_tangent(c, s, &t);
+        takt_curve_point(c, s, &on);
+        takt_curve_tangent(c, s, &t);
         for (int axis = 0; axis < AXIS_COUNT; axis++) {
             const double weight = chain_weight(axis) * chain_weight(axis);
 
@@ -45,7 +45,7 @@ static inline double chain_distance_across(const struct curve *c, const struct p
         }
         s = maths_clamp(s + along / square, 0.0, c->length_mm);
     }
-    curve_point(c, s, &on);
+    takt_curve_point(c, s, &on);
     return chain_distance(p, &on);
 }
 
@@ -63,14 +63,14 @@ static inline double chain_distance_from(const struct curve *c, const struct poi
     return least;
 }
 
-/* Of a corner from the straight line between two setpoints. */
+/* Distance of a corner from the straight line between two setpoints. */
 static inline double chain_corner_distance(const struct point *corner, const struct point *a,
                                            const struct point *b)
 {
     struct curve c;
 
-    return curve_set_line(&c, a, b) ? chain_distance_across(&c, corner, 0.0)
-                                    : chain_distance(corner, b);
+    return takt_curve_set_line(&c, a, b) ? chain_distance_across(&c, corner, 0.0)
+                                         : chain_distance(corner, b);
 }
 
 #endif

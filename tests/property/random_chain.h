@@ -1,5 +1,5 @@
 /*
- * Random chains of moves from a fixed seed, and setpoints judged by their differences: for tests of planner and motion
+ * Random chains of moves from a fixed seed, and setpoints verified by their differences: for tests of planner and motion
  * together. The families are chosen for what breaks planners: corners of any angle, nearly collinear blocks, blocks
  * shorter than a cycle, zigzags, arcs into arcs, helices, arcs whose two radii differ.
  */
@@ -41,7 +41,7 @@ static inline double chain_between(struct chain *c, double low, double high)
 
 static inline double chain_decades(struct chain *c, double from, double to)
 {
-    return maths_power(10.0, chain_between(c, from, to));
+    return takt_maths_power(10.0, chain_between(c, from, to));
 }
 
 static inline struct move chain_line(struct chain *c, double length_mm, double rise_mm)
@@ -54,8 +54,8 @@ static inline struct move chain_line(struct chain *c, double length_mm, double r
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     m.turns = 1;
     m.end = c->at;
-    m.end.at[AXIS_X] += length_mm * maths_cos(c->heading_rad);
-    m.end.at[AXIS_Y] += length_mm * maths_sin(c->heading_rad);
+    m.end.at[AXIS_X] += length_mm * takt_maths_cos(c->heading_rad);
+    m.end.at[AXIS_Y] += length_mm * takt_maths_sin(c->heading_rad);
     m.end.at[AXIS_Z] += rise_mm;
     return m;
 }
@@ -70,10 +70,10 @@ static inline struct move chain_arc(struct chain *c, double off_circle, double r
     struct move m = chain_line(c, 0.0, rise_mm);
 
     m.kind = sign < 0 ? MOVE_ARC_CW : MOVE_ARC_CCW;
-    m.centre_mm[0] = c->at.at[AXIS_X] - sign * radius * maths_sin(c->heading_rad);
-    m.centre_mm[1] = c->at.at[AXIS_Y] + sign * radius * maths_cos(c->heading_rad);
-    m.end.at[AXIS_X] = m.centre_mm[0] + radius * off_circle * maths_cos(angle);
-    m.end.at[AXIS_Y] = m.centre_mm[1] + radius * off_circle * maths_sin(angle);
+    m.centre_mm[0] = c->at.at[AXIS_X] - sign * radius * takt_maths_sin(c->heading_rad);
+    m.centre_mm[1] = c->at.at[AXIS_Y] + sign * radius * takt_maths_cos(c->heading_rad);
+    m.end.at[AXIS_X] = m.centre_mm[0] + radius * off_circle * takt_maths_cos(angle);
+    m.end.at[AXIS_Y] = m.centre_mm[1] + radius * off_circle * takt_maths_sin(angle);
     c->heading_rad += sweep;
     return m;
 }
@@ -126,13 +126,13 @@ static inline struct move chain_next(struct chain *c, enum chain_family family, 
 }
 
 /* The largest ratios to the limits so far, of setpoints handed over one by one. */
-struct chain_judge {
+struct chain_verifier {
     double history[AXIS_COUNT][4]; /* newest first */
     double velocity, acceleration, jerk;
 };
 
-static inline void chain_judge_axis(struct chain_judge *seen, const struct plan_limits *limits,
-                                    int axis, double x)
+static inline void chain_verifier_axis(struct chain_verifier *seen,
+                                       const struct plan_limits *limits, int axis, double x)
 {
     const double t = limits->cycle_s;
     double *h = seen->history[axis];
@@ -148,12 +148,13 @@ static inline void chain_judge_axis(struct chain_judge *seen, const struct plan_
     seen->jerk = maths_max(seen->jerk, j / limits->jerk_mm_s3[axis]);
 }
 
-static inline void chain_judge_setpoint(struct chain_judge *seen, const struct plan_limits *limits,
-                                        const struct point *cmd)
+static inline void chain_verifier_setpoint(struct chain_verifier *seen,
+                                           const struct plan_limits *limits,
+                                           const struct point *cmd)
 {
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         if (axis < CHAIN_AXES || (limits->axes & 1U << axis) != 0) {
-            chain_judge_axis(seen, limits, axis, cmd->at[axis]);
+            chain_verifier_axis(seen, limits, axis, cmd->at[axis]);
         }
     }
 }

@@ -27,7 +27,7 @@ static inline void schedule_random_control(struct chain *c, struct plan_limits *
     l->axes = 7;
     l->cycle_s = cycles_s[(unsigned)chain_between(c, 0, 4)];
     l->chord_error_max_mm = chain_decades(c, -4, -2);
-    l->law = (enum law)chain_between(c, 0, 3);
+    l->profile = (enum ramp_profile)chain_between(c, 0, 3);
 }
 
 static inline void schedule_random_axes(struct chain *c, struct plan_limits *l)
@@ -115,7 +115,7 @@ static inline void hands_follow(struct hands *h, struct motion *m)
     h->schedule.free = now->stop ? 0 : h->schedule.free;
     if (h->reset_at > 0 && cycle >= h->reset_at && !h->reset && h->use != SINGLE_ON) {
         h->reset = true;
-        motion_end_here(m);
+        takt_motion_end_here(m);
     }
 }
 
@@ -123,8 +123,8 @@ static inline void hands_follow(struct hands *h, struct motion *m)
 static inline void hands_hold_at_end(struct hands *h, const struct motion *m,
                                      const struct cycle_record *record)
 {
-    if (h->use != SINGLE_OFF && record->landed && motion_rests(m) && h->schedule.now.single_block &&
-        chain_between(&h->chance, 0, 1) < 0.7) {
+    if (h->use != SINGLE_OFF && record->landed && takt_motion_rests(m) &&
+        h->schedule.now.single_block && chain_between(&h->chance, 0, 1) < 0.7) {
         h->waits_until = m->cycles + (uint64_t)chain_decades(&h->chance, 0, 2.3);
     }
 }

@@ -2,7 +2,7 @@
  * The start angle of a hole-milling spiral, found from the distance of its start: for random base circles, numbers of
  * turns and starts, also within a nanometre of the centre and of the circle.
  *
- * test_bore_inversion NUMBER tries so many instead of RUNS.
+ * test_bore_inversion NUMBER tries this many instead of RUNS.
  */
 #include "base/maths.h"
 #include "bore/spiral.h"
@@ -47,11 +47,12 @@ static void test_every_start_is_found(void)
     double worst = 0.0;
 
     for (unsigned run = 0; run < runs; run++) {
-        const double radius_mm = maths_power(10.0, random_between(-1.0, 3.0));
+        const double radius_mm = takt_maths_power(10.0, random_between(-1.0, 3.0));
         const unsigned turns = 1U + (unsigned)random_between(0.0, run % 7 == 0 ? 2000.0 : 30.0);
         const double distance_mm = random_distance(run, radius_mm);
         const double angle = random_between(-3.2, 3.2);
-        const double start[2] = {distance_mm * maths_cos(angle), distance_mm * maths_sin(angle)};
+        const double start[2] = {distance_mm * takt_maths_cos(angle),
+                                 distance_mm * takt_maths_sin(angle)};
         struct bore_spiral s;
         double p[2];
         char where[120];

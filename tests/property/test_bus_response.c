@@ -104,11 +104,11 @@ static void simulate(struct bus *bus, const struct frame_rates *rates,
 }
 
 /* How near any message came to its bound, as a part of it. */
-static double judge_sets(uint32_t data_bitrate, unsigned lengths)
+static double verifier_sets(uint32_t data_bitrate, unsigned lengths)
 {
     const struct frame_rates rates = {1000000, data_bitrate};
     static struct bus bus;
-    unsigned judged = 0;
+    unsigned verified = 0;
     double closest = 0;
     for (unsigned set = 0; set < SETS; set++) {
         struct bus_message messages[MESSAGES_MAX];
@@ -124,25 +124,25 @@ static double judge_sets(uint32_t data_bitrate, unsigned lengths)
             TEST_ASSERT_LESS_OR_EQUAL_UINT64(worst_ns[i], seen_ns);
             double ratio = (double)seen_ns / (double)worst_ns[i];
             closest = ratio > closest ? ratio : closest;
-            judged++;
+            verified++;
         }
     }
-    printf("%u messages judged, the closest to its bound at %.4f of it\n", judged, closest);
-    TEST_ASSERT_GREATER_THAN_UINT(SETS, judged);
+    printf("%u messages judged, the closest to its bound at %.4f of it\n", verified, closest);
+    TEST_ASSERT_GREATER_THAN_UINT(SETS, verified);
     return closest;
 }
 
 /* A bound far away would prove little. */
 static void test_no_simulated_response_exceeds_its_predicted_bound(void)
 {
-    TEST_ASSERT_TRUE(judge_sets(0, 9) > 0.9);
+    TEST_ASSERT_TRUE(verifier_sets(0, 9) > 0.9);
 }
 
 static void test_nor_does_one_of_can_fd_at_any_rate(void)
 {
     static const uint32_t rates[] = {1000000, 2000000, 5000000, 8000000};
     for (unsigned i = 0; i < 4; i++)
-        TEST_ASSERT_TRUE(judge_sets(rates[i], 65) > 0.9);
+        TEST_ASSERT_TRUE(verifier_sets(rates[i], 65) > 0.9);
 }
 
 /*

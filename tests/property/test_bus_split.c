@@ -33,7 +33,7 @@ static void draw_machine(struct machine *machine)
     static const uint32_t cycles_us[] = {250, 500, 750, 1000};
     static const uint32_t data[] = {0, 0, 2000000, 5000000, 8000000};
 
-    machine_set_default(machine);
+    takt_machine_set_default(machine);
     machine->cycle_us = cycles_us[draw(4)];
     machine->can_data_bitrate = data[draw(5)];
     machine->error_pdo = (uint8_t)draw(2);
@@ -55,7 +55,7 @@ static uint32_t bits_of(const struct machine *machine, unsigned bus)
 {
     struct drives_load load;
 
-    (void)machine_predict_load(machine, bus, &load);
+    (void)takt_machine_predict_load(machine, bus, &load);
     return load.bits;
 }
 
@@ -117,7 +117,8 @@ static bool are_carried(const struct machine *machine)
 {
     struct drives_load load;
 
-    return machine_predict_load(machine, 0, &load) && machine_predict_load(machine, 1, &load);
+    return takt_machine_predict_load(machine, 0, &load) &&
+           takt_machine_predict_load(machine, 1, &load);
 }
 
 /* Two buses are advised only where they do, and whenever some split from the last axis on does. */

@@ -34,7 +34,7 @@ static double random_between(double low, double high)
 
 static double random_decades(double from, double to)
 {
-    return maths_power(10.0, random_between(from, to));
+    return takt_maths_power(10.0, random_between(from, to));
 }
 
 /* Rotation */
@@ -55,7 +55,7 @@ static struct circle random_circle(unsigned n)
     c.angle_rad = maths_sqrt(acceleration / c.radius_mm) * CYCLE_S * random_between(0.2, 1);
     c.angle_rad = maths_clamp(c.angle_rad, 1e-3, 0.2);
     c.sweep_rad = random_between(0.1, 2 * MATHS_TWO_PI) * (random_between(0, 1) < 0.5 ? -1 : 1);
-    c.steps = (unsigned)maths_ceil(maths_abs(c.sweep_rad) / c.angle_rad);
+    c.steps = (unsigned)takt_maths_ceil(maths_abs(c.sweep_rad) / c.angle_rad);
     c.angle_rad = maths_abs(c.sweep_rad) / (double)c.steps;
     (void)snprintf(shape, sizeof shape, "circle %u: R %g mm, %g rad a step, %g rad", n, c.radius_mm,
                    c.angle_rad, c.sweep_rad);
@@ -74,12 +74,12 @@ static struct rotation_errors rotate_round(const struct circle *c, double quantu
     struct rotate r;
     double sine, cosine, ahead;
 
-    maths_sincos(start, &sine, &cosine);
-    rotate_begin(&r, c->radius_mm * cosine, c->radius_mm * sine, quantum_rad);
+    takt_maths_sincos(start, &sine, &cosine);
+    takt_rotate_begin(&r, c->radius_mm * cosine, c->radius_mm * sine, quantum_rad);
     for (unsigned i = 0; i < c->steps; i++)
-        (void)rotate_step(&r, signed_angle);
-    ahead = maths_atan2(r.b, r.a) - start - c->sweep_rad;
-    ahead -= MATHS_TWO_PI * maths_round(ahead / MATHS_TWO_PI);
+        (void)takt_rotate_step(&r, signed_angle);
+    ahead = takt_maths_atan2(r.b, r.a) - start - c->sweep_rad;
+    ahead -= MATHS_TWO_PI * takt_maths_round(ahead / MATHS_TWO_PI);
     errors.along_mm = c->radius_mm * (c->sweep_rad < 0 ? -ahead : ahead);
     errors.contour_mm = maths_sqrt(r.a * r.a + r.b * r.b) - c->radius_mm;
     return errors;
@@ -100,8 +100,8 @@ static void test_rotation_errs_by_less_than_its_bounds_along_and_across_the_circ
         struct circle c = random_circle(n);
         struct rotation_errors errors = rotate_round(&c, 0);
         double room = rounding_mm(&c);
-        double along_bound = bounds_rotation_along_mm(c.radius_mm, c.angle_rad, c.sweep_rad);
-        double across_bound = bounds_rotation_growth_mm(c.radius_mm, c.angle_rad, c.sweep_rad);
+        double along_bound = takt_bounds_rotation_along_mm(c.radius_mm, c.angle_rad, c.sweep_rad);
+        double across_bound = takt_bounds_rotation_growth_mm(c.radius_mm, c.angle_rad, c.sweep_rad);
         double across_page = c.radius_mm * (double)c.steps * c.angle_rad * c.angle_rad *
                              c.angle_rad * c.angle_rad / 8;
 
@@ -127,15 +127,16 @@ static void test_rotation_errs_by_less_than_its_bounds_along_and_across_the_circ
 static void test_a_turn_within_an_acceleration_errs_by_less_than_a_third_of_pi_a_dt_squared(void)
 {
     for (unsigned n = 0; n < 38; n++) {
-        double radius = 0.05 * maths_power(1.3, n);
+        double radius = 0.05 * takt_maths_power(1.3, n);
         double speed = maths_sqrt(1000.0 * radius);
         struct circle c = {radius, speed * CYCLE_S / radius, MATHS_TWO_PI, 0};
 
-        c.steps = (unsigned)maths_ceil(MATHS_TWO_PI / c.angle_rad);
+        c.steps = (unsigned)takt_maths_ceil(MATHS_TWO_PI / c.angle_rad);
         c.angle_rad = MATHS_TWO_PI / (double)c.steps;
         (void)snprintf(shape, sizeof shape, "R %g", radius);
         TEST_ASSERT_TRUE_MESSAGE(rotate_round(&c, 0).along_mm <=
-                                     bounds_rotation_turn_mm(1000.0, CYCLE_S) + rounding_mm(&c),
+                                     takt_bounds_rotation_turn_mm(1000.0, CYCLE_S) +
+                                         rounding_mm(&c),
                                  shape);
     }
 }
@@ -149,14 +150,14 @@ static void test_few_bits_of_the_angle_cost_evenness_and_no_contour(void)
             /* The largest angle of the word is at least that of the step. */
             double quantum = c.angle_rad / (double)(1U << (bits - 1)) * random_between(0.5, 1);
             double fine =
-                bounds_rotation_growth_mm(c.radius_mm, c.angle_rad + quantum, c.sweep_rad);
+                takt_bounds_rotation_growth_mm(c.radius_mm, c.angle_rad + quantum, c.sweep_rad);
             struct rotation_errors errors = rotate_round(&c, quantum);
             double room = rounding_mm(&c) + fine * quantum / maths_abs(c.sweep_rad);
 
             TEST_ASSERT_TRUE_MESSAGE(errors.contour_mm <= fine + room, shape);
             TEST_ASSERT_TRUE_MESSAGE(
                 maths_abs(errors.along_mm) <=
-                    bounds_rotation_along_mm(c.radius_mm, c.angle_rad + quantum, c.sweep_rad) +
+                    takt_bounds_rotation_along_mm(c.radius_mm, c.angle_rad + quantum, c.sweep_rad) +
                         0.5 * c.radius_mm * quantum + rounding_mm(&c),
                 shape);
         }
@@ -242,12 +243,12 @@ static void run_line(const struct line_case *c)
     struct point way, before = {{0}}, step;
     double feed = c->config.start_mm, loss_mm = 0;
 
-    integrate_line_begin(&line, &c->config, &c->start, &c->end);
-    while (integrate_line_cycle(&line)) {
+    takt_integrate_line_begin(&line, &c->config, &c->start, &c->end);
+    while (takt_integrate_line_cycle(&line)) {
         double bound = maths_sqrt(AXIS_COUNT) * (line.axes.loss_ulp + 1) * c->config.unit_mm;
 
         loss_mm = maths_max(loss_mm, bound);
-        integrate_get_way(&line.axes, &way);
+        takt_integrate_get_way(&line.axes, &way);
         for (unsigned i = 0; i < AXIS_COUNT; i++)
             step.at[i] = way.at[i] - before.at[i];
         before = way;
@@ -295,8 +296,8 @@ static void test_lines_in_short_words_end_too(void)
         unsigned cycles = 0;
 
         c.config.unit_mm = random_decades(-5, 1);
-        integrate_line_begin(&line, &c.config, &c.start, &c.end);
-        while (integrate_line_cycle(&line) && cycles < 1000000)
+        takt_integrate_line_begin(&line, &c.config, &c.start, &c.end);
+        while (takt_integrate_line_cycle(&line) && cycles < 1000000)
             cycles++;
         TEST_ASSERT_TRUE_MESSAGE(cycles < 1000000, shape);
         TEST_ASSERT_EQUAL_MEMORY_MESSAGE(line.axes.end, line.axes.position, sizeof line.axes.end,
@@ -312,19 +313,20 @@ static void test_a_word_of_m_bits_counts_the_whole_range(void)
         const unsigned bits = INTERPOLATOR_WORD_BITS_MIN +
                               (unsigned)random_between(0, INTERPOLATOR_WORD_BITS_MAX -
                                                               INTERPOLATOR_WORD_BITS_MIN + 1);
-        const double unit = interpolator_unit_mm(increment, range, bits);
-        const double most = maths_power(2.0, (double)bits - 1.0);
+        const double unit = takt_interpolator_unit_mm(increment, range, bits);
+        const double most = takt_maths_power(2.0, (double)bits - 1.0);
 
         TEST_ASSERT_TRUE(range < unit * most * (1 + 1e-12));
         TEST_ASSERT_TRUE(range >= 0.5 * unit * most * (1 - 1e-12));
     }
-    TEST_ASSERT_TRUE(interpolator_unit_mm(1e-3, 1000, INTERPOLATOR_WORD_BITS) == 0x1p-32 * 1e-3);
-    TEST_ASSERT_TRUE(interpolator_unit_mm(1e-3, 1000, 16) == 32e-3);
+    TEST_ASSERT_TRUE(takt_interpolator_unit_mm(1e-3, 1000, INTERPOLATOR_WORD_BITS) ==
+                     0x1p-32 * 1e-3);
+    TEST_ASSERT_TRUE(takt_interpolator_unit_mm(1e-3, 1000, 16) == 32e-3);
 }
 
 /* The interpolators behind a planner's feed: an S-curve from rest to a feed and, one time in two, back to rest. */
 
-static double s_curve(double part, bool stops)
+static double takt_s_curve(double part, bool stops)
 {
     /* s = t^3 (10 - 15 t + 6 t^2) rests at both ends; its first half ends at full feed */
     double t = stops ? part : 0.5 * part;
@@ -336,18 +338,18 @@ static double s_curve(double part, bool stops)
 static void run_behind_feed(struct interpolator *i, const struct curve *curve, uint32_t block,
                             bool stops)
 {
-    unsigned cycles = (unsigned)maths_ceil(curve->length_mm * 40);
+    unsigned cycles = (unsigned)takt_maths_ceil(curve->length_mm * 40);
 
     for (unsigned k = 1; k <= cycles; k++) {
-        double part = s_curve((double)k / (double)cycles, stops);
+        double part = takt_s_curve((double)k / (double)cycles, stops);
         struct point cmd;
         bool landed = k == cycles;
 
         if (landed)
             cmd = curve->end;
         else
-            curve_point(curve, part * curve->length_mm, &cmd);
-        interpolator_cycle(i, curve, block, landed, &cmd);
+            takt_curve_point(curve, part * curve->length_mm, &cmd);
+        takt_interpolator_cycle(i, curve, block, landed, &cmd);
         TEST_ASSERT_TRUE_MESSAGE(!landed || point_is_same(&cmd, &curve->end), shape);
     }
 }
@@ -364,11 +366,11 @@ static bool random_curve(struct curve *curve, enum interpolator_kind kind)
         end.at[i] = start.at[i] + random_between(-5, 5);
     }
     if (kind == INTERPOLATOR_INTEGRATE)
-        return curve_set_line(curve, &start, &end);
-    maths_sincos(random_between(0, MATHS_TWO_PI), &sine, &cosine);
+        return takt_curve_set_line(curve, &start, &end);
+    takt_maths_sincos(random_between(0, MATHS_TWO_PI), &sine, &cosine);
     start.at[AXIS_X] = end.at[AXIS_X] = centre[0] + radius * cosine;
     start.at[AXIS_Y] = end.at[AXIS_Y] = centre[1] + radius * sine;
-    return curve_set_arc(curve, &start, &end, PLANE_XY, centre, random_between(0, 1) < 0.5, 1);
+    return takt_curve_set_arc(curve, &start, &end, PLANE_XY, centre, random_between(0, 1) < 0.5, 1);
 }
 
 static void check_behind_feed(enum interpolator_kind kind, const char *name)
@@ -384,9 +386,9 @@ static void check_behind_feed(enum interpolator_kind kind, const char *name)
 
         (void)snprintf(shape, sizeof shape, "%s %u", name, n);
         TEST_ASSERT_TRUE_MESSAGE(random_curve(&curve, kind), shape);
-        interpolator_init(&i, &config);
+        takt_interpolator_init(&i, &config);
         run_behind_feed(&i, &curve, 1, n % 2 == 0);
-        errors = interpolator_get_errors(&i);
+        errors = takt_interpolator_get_errors(&i);
         TEST_ASSERT_TRUE_MESSAGE(errors->along_bound_mm > 0, shape);
         TEST_ASSERT_TRUE_MESSAGE(errors->along_mm <= errors->along_bound_mm * 1.0001 + 1e-12,
                                  shape);

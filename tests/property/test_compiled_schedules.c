@@ -3,8 +3,8 @@
  * random schedules of overrides, holds and single block, the file as a stream that is now and then late. The setpoints keep every axis's limits by differences, are within
  * the tolerance of the programmed path, stop only on it, and end in the programmed end.
  *
- * test_compiled_schedules NUMBER runs so many programs instead of PROGRAMS, test_compiled_schedules NUMBER FIRST from that
- * seed on.
+ * test_compiled_schedules NUMBER runs this many programs instead of PROGRAMS, test_compiled_schedules NUMBER FIRST from
+ * that seed on.
  */
 #include "ahead/compile.h"
 #include "chain_distance.h"
@@ -50,7 +50,7 @@ struct run {
     FILE *compiled;
     /* of one schedule */
     bool
-        is_stream; /* the compiled program comes while it runs: so many bytes a cycle from a cycle on */
+        is_stream; /* the compiled program comes while it runs: bytes_a_cycle in each, from a cycle on */
     size_t came, taken;
     double bytes_a_cycle;
     uint64_t comes_from;
@@ -61,7 +61,7 @@ struct run {
     uint64_t start_at;     /* cycle in which the operator goes on after a block */
     unsigned landed;       /* blocks that ended at rest */
     uint32_t last_landed;
-    struct chain_judge judge;
+    struct chain_verifier verifier;
     struct point last;
     double path_mm;
     bool stands_well; /* whatever record said to be landed on stood still */
@@ -97,7 +97,7 @@ static void random_machine(struct run *r)
 
 static void add_move(struct run *r, const struct move *m)
 {
-    r->has_length[r->moves] = move_curve(m, &r->end, &r->curve[r->moves]);
+    r->has_length[r->moves] = takt_move_curve(m, &r->end, &r->curve[r->moves]);
     r->move[r->moves++] = *m;
     r->end = m->end;
 }
@@ -128,7 +128,7 @@ static enum compile_result compile_program(struct run *r)
     const struct point start = {{0}};
     const struct compile_config config = {.limits = r->limits,
                                           .cycle_us =
-                                              (uint32_t)maths_round(1e6 * r->limits.cycle_s),
+                                              (uint32_t)takt_maths_round(1e6 * r->limits.cycle_s),
                                           .ceiling_percent = r->ceiling_percent,
                                           .tolerance_part = 1,
                                           .tolerance_mm = r->tolerance_mm,
@@ -169,10 +169,10 @@ static void push_next(struct run *r)
 {
     struct move m = r->pushed < r->moves ? r->move[r->pushed] : end_of_program;
 
-    replay_prepare(&m);
-    path_push(&path, &m);
+    takt_replay_prepare(&m);
+    takt_path_push(&path, &m);
     if (r->pushed++ >= r->moves) {
-        path_finish(&path);
+        takt_path_finish(&path);
     }
 }
 
@@ -193,15 +193,15 @@ static void receive(struct run *r)
 static void background(struct run *r)
 {
     receive(r);
-    replay_read(&replay, &r->limits);
-    if (motion_wanted(&motion) == NULL) {
+    takt_replay_read(&replay, &r->limits);
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && path_has_room(&path)) {
+    takt_path_go_on(&path);
+    while (!path.finished && takt_path_has_room(&path)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 /* A schedule's operator, who now and then wants single block, and then goes on when it pleases. */
@@ -220,7 +220,7 @@ static struct motion_operator operator_at(struct run *r)
     return wanted;
 }
 
-static void judge_cycle(struct run *r, const struct cycle_record *record)
+static void verifier_cycle(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->moves ? record->block + AROUND : r->moves;
@@ -234,7 +234,7 @@ static void judge_cycle(struct run *r, const struct cycle_record *record)
     if (least < MATHS_INFINITY) {
         r->path_mm = maths_max(r->path_mm, least);
     }
-    chain_judge_setpoint(&r->judge, &r->limits, &record->cmd);
+    chain_verifier_setpoint(&r->verifier, &r->limits, &record->cmd);
     r->last = record->cmd;
 }
 
@@ -245,7 +245,7 @@ static void look_at_landing(struct run *r, const struct motion_operator *wanted,
     if (!record->landed) {
         return;
     }
-    r->stands_well = r->stands_well && motion_rests(&motion) && record->block > r->last_landed;
+    r->stands_well = r->stands_well && takt_motion_rests(&motion) && record->block > r->last_landed;
     r->last_landed = record->block;
     r->landed++;
     if (wanted->single_block) {
@@ -260,11 +260,11 @@ static void begin_replay(struct run *r, bool is_stream)
         .context = r, .read = read_compiled, .is_lost = is_stream ? is_never_lost : NULL};
 
     rewind(r->compiled);
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, false);
-    handover_allow(&motion);
-    handover_allow_linear(&motion);
-    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
+    takt_handover_allow(&motion);
+    takt_handover_allow_linear(&motion);
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
     memset(&r->schedule, 0, sizeof(r->schedule));
     r->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     r->schedule.target = 1.0;
@@ -280,7 +280,7 @@ static void begin_replay(struct run *r, bool is_stream)
     r->landed = 0;
     r->last_landed = 0;
     r->stands_well = true;
-    memset(&r->judge, 0, sizeof(r->judge));
+    memset(&r->verifier, 0, sizeof(r->verifier));
     memset(&r->last, 0, sizeof(r->last));
     r->path_mm = 0.0;
 }
@@ -292,15 +292,15 @@ static enum motion_result cycle(struct run *r)
     enum motion_result result;
 
     background(r);
-    result = motion_cycle(&motion, &wanted, &record);
+    result = takt_motion_cycle(&motion, &wanted, &record);
     if (result == MOTION_HANDED_OVER) {
-        if (replay_cycle(&replay, &motion, &wanted, &record) == REPLAY_FAILED) {
+        if (takt_replay_cycle(&replay, &motion, &wanted, &record) == REPLAY_FAILED) {
             return MOTION_EMPTY;
         }
         result = MOTION_CYCLE;
     }
     if (result == MOTION_CYCLE) {
-        judge_cycle(r, &record);
+        verifier_cycle(r, &record);
         look_at_landing(r, &wanted, &record);
     }
     return result;
@@ -340,19 +340,19 @@ static void check_run(const struct run *r, enum motion_result result, unsigned s
                    "seed %u schedule %u family %d moves %u cycle %g s P %g: %llu cycles, %u stops, "
                    "v %.5f a %.5f j %.5f, path %.4f P, alarm %d",
                    seed, schedule, (int)r->family, r->moves, r->limits.cycle_s, r->tolerance_mm,
-                   (unsigned long long)motion.cycles, r->landed, r->judge.velocity,
-                   r->judge.acceleration, r->judge.jerk, r->path_mm / r->tolerance_mm,
+                   (unsigned long long)motion.cycles, r->landed, r->verifier.velocity,
+                   r->verifier.acceleration, r->verifier.jerk, r->path_mm / r->tolerance_mm,
                    (int)replay.alarm.code);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MOTION_DONE, result, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.velocity <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.acceleration <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.jerk <= 1.001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.velocity <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.acceleration <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.jerk <= 1.001, message);
     TEST_ASSERT_TRUE_MESSAGE(r->path_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(r->stands_well, message);
     TEST_ASSERT_TRUE_MESSAGE(chain_distance(&r->last, &r->end) == 0.0, message);
 }
 
-/* What the compiler finds no motion for, or its judge refuses, it says so: that is no matter of the replay. */
+/* What the compiler finds no motion for, or its verifier refuses, it says so: that is no matter of the replay. */
 static void test_limits_and_path_are_kept_under_any_schedule(void)
 {
     unsigned compiled = 0;
@@ -408,13 +408,14 @@ static void test_single_block_stops_at_the_end_of_every_block(void)
         struct cycle_record record = {0};
 
         background(&run);
-        result = motion_cycle(&motion, &wanted, &record);
+        result = takt_motion_cycle(&motion, &wanted, &record);
         if (result == MOTION_HANDED_OVER) {
-            TEST_ASSERT_EQUAL_INT(REPLAY_CYCLE, replay_cycle(&replay, &motion, &wanted, &record));
+            TEST_ASSERT_EQUAL_INT(REPLAY_CYCLE,
+                                  takt_replay_cycle(&replay, &motion, &wanted, &record));
         }
         if (record.landed) {
             TEST_ASSERT_EQUAL_UINT32(next, record.block);
-            TEST_ASSERT_TRUE(motion_rests(&motion));
+            TEST_ASSERT_TRUE(takt_motion_rests(&motion));
             TEST_ASSERT_TRUE(chain_distance(&record.cmd, &run.move[next - 1].end) <=
                              2.0 * run.tolerance_mm);
             next++;

@@ -42,9 +42,9 @@ static void give_byte(uint8_t byte)
 {
     if (byte == 0x18)
         return;
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && !console_has_room(&console); i++)
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && !takt_console_has_room(&console); i++)
         step();
-    console_take(&console, byte);
+    takt_console_take(&console, byte);
     ends += byte == '\r' || (byte == '\n' && !has_return);
     if (byte < 0x80 && byte != '?' && byte != '!' && byte != '~')
         has_return = byte == '\r';
@@ -71,8 +71,8 @@ static void give_piece(void)
 static void await_answers(void)
 {
     for (unsigned i = 0; i < PATIENCE_CYCLES && answers() < ends; i++) {
-        if (service_get_state(&service) == PANEL_HELD)
-            console_take(&console, '~');
+        if (takt_service_get_state(&service) == PANEL_HELD)
+            takt_console_take(&console, '~');
         step();
     }
 }
@@ -94,7 +94,7 @@ static void try_case(unsigned seed)
     give_byte('\n');
     await_answers();
     (void)snprintf(told, sizeof told, "seed %u, state %d, waits %d", seed,
-                   (int)service_get_state(&service), console_is_waiting(&console));
+                   (int)takt_service_get_state(&service), takt_console_is_waiting(&console));
     TEST_ASSERT_EQUAL_UINT_MESSAGE(ends, answers(), told);
     TEST_ASSERT_TRUE_MESSAGE(most_acceleration <= 1000.0 * 1.0001, told);
     TEST_ASSERT_TRUE_MESSAGE(most_jerk <= 50000.0 * 1.001, told);
@@ -115,7 +115,7 @@ static void test_after_a_reset_it_answers_again(void)
             give_piece();
             steps(draw(10));
         }
-        console_take(&console, 0x18);
+        takt_console_take(&console, 0x18);
         forget();
         for (unsigned k = 0; k < BENCH_CYCLES_MAX && strstr(said, "Grbl 1.1h") == NULL; k++)
             step();

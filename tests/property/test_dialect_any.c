@@ -32,7 +32,7 @@ static unsigned draw(unsigned count)
     return (unsigned)((state >> 20) % count);
 }
 
-/* Of lines of every dialect. */
+/* Pieces of lines of every dialect. */
 static const char *const pieces[] = {"IF[#1EQ1]",
                                      "GOTO ",
                                      "THEN ",

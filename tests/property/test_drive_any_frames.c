@@ -66,14 +66,14 @@ static void put_statuses(void)
         struct can_frame *frame;
         if (nodes.starts[node] == 0)
             continue;
-        shown[node] = cia402_next_state(shown[node], control[node], 0);
+        shown[node] = takt_cia402_next_state(shown[node], control[node], 0);
         frame = fake_nodes_add(&nodes);
         *frame = (struct can_frame){.id = (uint16_t)(0x180 + node), .length = 6};
-        little_endian_write16(frame->data, (uint16_t)(cia402_statusword(shown[node]) |
+        little_endian_write16(frame->data, (uint16_t)(takt_cia402_statusword(shown[node]) |
                                                       (nodes.mode[node] == 8 ? 0x1000 : 0) |
                                                       (control[node] & 0x10 ? 0x1400 : 0)));
         if (++beats % 50 == 0)
-            nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
+            takt_nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
     }
 }
 
@@ -100,7 +100,7 @@ static void init(uint64_t seed)
     memset(control, 0, sizeof control);
     for (unsigned i = 0; i < 128; i++)
         shown[i] = CIA402_SWITCH_ON_DISABLED;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     random_state = seed;
     beats = 0;
     (void)snprintf(message, sizeof message, "seed %u", (unsigned)seed);
@@ -111,22 +111,22 @@ static void cycle(unsigned one_in)
 {
     static const struct point setpoint;
     enum drives_state before = drives_get_state(&drives);
-    struct diagnostic fault = *drives_get_fault(&drives);
+    struct diagnostic fault = *takt_drives_get_fault(&drives);
     put_statuses();
     while (draw(one_in) == 0)
         put_random_frame();
     has_sent_target = false;
-    drives_receive(&drives, &port);
+    takt_drives_receive(&drives, &port);
     is_braking = drives_get_state(&drives) >= DRIVES_BRAKING;
-    drives_sync(&drives, &port);
-    drives_send(&drives, &port, &setpoint);
+    takt_drives_sync(&drives, &port);
+    takt_drives_send(&drives, &port, &setpoint);
     TEST_ASSERT_TRUE_MESSAGE(drives_get_state(&drives) >= before, message);
     TEST_ASSERT_FALSE_MESSAGE(is_braking && has_sent_target, message);
     if (before > DRIVES_ENABLED) {
-        TEST_ASSERT_EQUAL_INT_MESSAGE(fault.code, drives_get_fault(&drives)->code, message);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(fault.code, takt_drives_get_fault(&drives)->code, message);
     }
     if (drives_get_state(&drives) > DRIVES_ENABLED) {
-        TEST_ASSERT_NOT_EQUAL_MESSAGE(TAKT_OK, drives_get_fault(&drives)->code, message);
+        TEST_ASSERT_NOT_EQUAL_MESSAGE(TAKT_OK, takt_drives_get_fault(&drives)->code, message);
     }
 }
 

@@ -36,7 +36,7 @@ static double any(void)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/* Of any size and shape, both directions of counting; the steepest are steeper than is allowed. */
+/* A table of any size and shape, both directions of counting; the steepest are steeper than is allowed. */
 static void make_any(struct pitch *pitch)
 {
     memset(pitch, 0, sizeof *pitch);
@@ -147,7 +147,7 @@ static double compare(const struct pitch *pitch, unsigned seed)
         biggest_mm = fmax(biggest_mm, fabs(pitch->value_mm[i]));
     for (unsigned i = 0; i <= SAMPLES * (pitch->points + 3); i++) {
         double at = (double)i / SAMPLES - 2, y_mm = motor_mm_at(pitch, at);
-        double got_mm = pitch_at(pitch, y_mm), wanted_mm = reference_at(pitch, at);
+        double got_mm = takt_pitch_at(pitch, y_mm), wanted_mm = reference_at(pitch, at);
         if (!(fabs(got_mm - wanted_mm) <= 1e-12 * (1 + biggest_mm + fabs(y_mm))))
             (void)printf("seed %u: %.17g instead of %.17g at %g steps\n", seed, got_mm, wanted_mm,
                          at);
@@ -165,8 +165,8 @@ static void go_round(const struct pitch *pitch)
 {
     for (unsigned i = 0; i < 200; i++) {
         double target_mm = motor_mm_at(pitch, (any() * 1.4 - 0.2) * pitch->points);
-        double motor_mm = pitch_get_motor_mm(pitch, target_mm);
-        double actual_mm = motor_mm + pitch_at(pitch, motor_mm);
+        double motor_mm = takt_pitch_get_motor_mm(pitch, target_mm);
+        double actual_mm = motor_mm + takt_pitch_at(pitch, motor_mm);
         TEST_ASSERT_DOUBLE_WITHIN(1e-15 * (1 + 4 * fabs(target_mm)), target_mm, actual_mm);
     }
 }
@@ -179,7 +179,7 @@ static void test_any_table_is_the_spline_of_its_points_is_monotone_and_has_its_i
         state = seed;
         make_any(&pitch);
         before = pitch;
-        if (pitch_make(&pitch)) {
+        if (takt_pitch_make(&pitch)) {
             taken++;
             make_reference(&pitch);
             TEST_ASSERT_TRUE(compare(&pitch, seed) <= PITCH_STEEPEST_RATIO);
@@ -187,7 +187,7 @@ static void test_any_table_is_the_spline_of_its_points_is_monotone_and_has_its_i
         } else {
             refused++;
             TEST_ASSERT_EQUAL_UINT(0, pitch.points);
-            TEST_ASSERT_TRUE(pitch_at(&pitch, before.first_mm) == 0);
+            TEST_ASSERT_TRUE(takt_pitch_at(&pitch, before.first_mm) == 0);
             pitch.points = before.points;
             make_reference(&pitch);
             TEST_ASSERT_TRUE(compare(&pitch, seed) > PITCH_STEEPEST_RATIO / 4);

@@ -2,8 +2,8 @@
  * Feed holds on smoothed paths, from any moment: on machines drawn by their dimensionless numbers the axes come to rest
  * within a time that their limits tell, and go on afterwards, and no limit is broken.
  *
- * test_holds NUMBER runs so many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints how
- * long the holds took, in parts of V/A + A/J.
+ * test_holds NUMBER runs this many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints
+ * how long the holds took, in parts of V/A + A/J.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -22,13 +22,14 @@
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 2000000
 
-/* Of a program at a feed far below what the axes can do so many cycles are looked at, and setpoints have this rounding. */
+/* Cycles looked at of a program at a feed far below what the axes can do, and the rounding of setpoints. */
 #define SLOW_CYCLES 20000
 #define ROUNDING_MM 1e-10
 
 /*
- * A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a thousand holds may take more. Not counted
- * are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of them.
+ * A hold takes up to HOLD_PARTS of V/A + A/J, and HOLD_CYCLES beside it; SLOW_OF_THOUSAND of a thousand holds may take
+ * more. Not counted are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of
+ * them.
  */
 #define HOLD_CYCLES_MIN  4.0
 #define HOLD_PARTS       1.5
@@ -61,7 +62,7 @@ struct run {
     double feed_part;  /* the highest feed that was gone along with, as a part of that */
     double longest;    /* in parts of that */
     unsigned held;
-    struct chain_judge judge;
+    struct chain_verifier verifier;
 };
 
 static struct run run;
@@ -82,14 +83,14 @@ static void random_machine(struct run *r)
     struct plan_limits *l = &r->limits;
     const double v = chain_decades(&r->chain, 1.0, 2.7);
     const double braking = chain_decades(&r->chain, -0.5, 2.0); /* V J/A^2 */
-    const double t = maths_power(2.0, (double)(int)chain_between(&r->chain, -2, 3)) * 1e-3;
+    const double t = takt_maths_power(2.0, (double)(int)chain_between(&r->chain, -2, 3)) * 1e-3;
     const double rounding = chain_decades(&r->chain, -2.0, 0.5); /* tau J/A */
 
     l->axes = 7;
     l->cycle_s = t;
     l->chord_error_max_mm = 0.01;
     l->landing = LANDING_SPAN;
-    l->law = (enum law)chain_between(&r->chain, 0, 3);
+    l->profile = (enum ramp_profile)chain_between(&r->chain, 0, 3);
     for (int i = 0; i < CHAIN_AXES; i++) {
         const double part = chain_decades(&r->chain, -0.5, 0.0);
 
@@ -146,22 +147,22 @@ static void push_next(struct run *r)
         memset(&m, 0, sizeof(m));
         m.kind = MOVE_END;
     }
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
     if (m.kind == MOVE_END) {
-        path_finish(&path);
+        takt_path_finish(&path);
     }
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && path_has_room(&path)) {
+    takt_path_go_on(&path);
+    while (!path.finished && takt_path_has_room(&path)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static void count_hold(struct run *r)
@@ -182,12 +183,12 @@ static void count_hold(struct run *r)
 /* Holds until the axes are at rest, and for a little while; then not, for a random time. */
 static void follow(struct run *r)
 {
-    if (r->holds ? motion_rests(&motion) && motion.cycles > r->change + 2
+    if (r->holds ? takt_motion_rests(&motion) && motion.cycles > r->change + 2
                  : motion.cycles >= r->change) {
         if (r->holds && r->moved) {
             count_hold(r);
         }
-        r->moved = !motion_rests(&motion);
+        r->moved = !takt_motion_rests(&motion);
         r->holds = !r->holds;
         r->change = motion.cycles;
         if (!r->holds) {
@@ -197,7 +198,7 @@ static void follow(struct run *r)
 }
 
 /* No chord is longer than the curve between its ends. */
-static void judge_feed(struct run *r, const struct point *cmd)
+static void verifier_feed(struct run *r, const struct point *cmd)
 {
     double square = 0.0;
 
@@ -218,16 +219,16 @@ static enum motion_result run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     do {
         plan(r);
         follow(r);
         now.hold = r->holds;
-        result = motion_cycle(&motion, &now, &record);
+        result = takt_motion_cycle(&motion, &now, &record);
         if (result == MOTION_CYCLE) {
-            chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
-            judge_feed(r, &record.cmd);
+            chain_verifier_setpoint(&r->verifier, &r->limits, &record.cmd);
+            verifier_feed(r, &record.cmd);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < r->cycles_max);
     return result;
@@ -243,12 +244,12 @@ static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(
         set_up_run(&run, seed);
         const enum motion_result result = run_program(&run);
 
-        if (result != MOTION_DONE || run.judge.velocity > 1.0001 ||
-            run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001) {
+        if (result != MOTION_DONE || run.verifier.velocity > 1.0001 ||
+            run.verifier.acceleration > 1.0001 || run.verifier.jerk > 1.001) {
             failed++;
             printf("seed %u: %s in %llu cycles, %u holds, v %.5f a %.5f j %.5f\n", seed,
                    result == MOTION_DONE ? "done" : "not done", (unsigned long long)motion.cycles,
-                   run.held, run.judge.velocity, run.judge.acceleration, run.judge.jerk);
+                   run.held, run.verifier.velocity, run.verifier.acceleration, run.verifier.jerk);
         }
         if (run.longest > longest) {
             longest = run.longest;
@@ -273,10 +274,11 @@ static void test_no_programmed_feed_is_exceeded(void)
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
         set_up_slow_run(&run, seed);
         (void)run_program(&run);
-        if (run.feed_part > 1.001 || run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001) {
+        if (run.feed_part > 1.001 || run.verifier.acceleration > 1.0001 ||
+            run.verifier.jerk > 1.001) {
             failed++;
             printf("seed %u: %u holds, %.5f of the feed, a %.5f j %.5f\n", seed, run.held,
-                   run.feed_part, run.judge.acceleration, run.judge.jerk);
+                   run.feed_part, run.verifier.acceleration, run.verifier.jerk);
         }
     }
     TEST_ASSERT_EQUAL_UINT(0, failed);

@@ -3,7 +3,7 @@
  * differences, through the start and the end on the base circle too; the end is hit; and wherever no limit binds, equal
  * cycles go equal lengths.
  *
- * test_involutes NUMBER runs so many seeds of each family and machine instead of SEEDS.
+ * test_involutes NUMBER runs this many seeds of each family and machine instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -24,7 +24,7 @@ static const struct plan_limits machines[] = {
      {50000, 50000, 50000},
      CYCLE_S,
      1e-3,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
     {7,
      {100, 60, 20},
@@ -32,23 +32,30 @@ static const struct plan_limits machines[] = {
      {50000, 8000, 200000},
      CYCLE_S,
      1e-3,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
-    {7, {500, 500, 500}, {200, 5000, 5000}, {1e6, 1e6, 1e5}, CYCLE_S, 1e-2, LAW_JERK, LANDING_SPAN},
+    {7,
+     {500, 500, 500},
+     {200, 5000, 5000},
+     {1e6, 1e6, 1e5},
+     CYCLE_S,
+     1e-2,
+     RAMP_PROFILE_JERK,
+     LANDING_SPAN},
     {7,
      {500, 500, 500},
      {20000, 20000, 20000},
      {2e6, 2e6, 2e6},
      CYCLE_S,
      1e-4,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
 };
 
 static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 
 /* What a run is about. */
 struct task {
@@ -81,8 +88,8 @@ static struct point point_of(const struct task *t, double phi)
     const double angle = phi + t->turned_rad;
     struct point p = {{0}};
 
-    p.at[AXIS_X] = t->radius_mm * (maths_cos(angle) + phi * maths_sin(angle));
-    p.at[AXIS_Y] = t->radius_mm * (maths_sin(angle) - phi * maths_cos(angle));
+    p.at[AXIS_X] = t->radius_mm * (takt_maths_cos(angle) + phi * takt_maths_sin(angle));
+    p.at[AXIS_Y] = t->radius_mm * (takt_maths_sin(angle) - phi * takt_maths_cos(angle));
     p.at[AXIS_Y] *= t->mirrored ? -1.0 : 1.0;
     return p;
 }
@@ -93,11 +100,11 @@ static void push_line(const struct task *t, struct point *at, double phi, double
     struct move m = {.kind = MOVE_FEED, .feed_mm_s = t->feed_mm_s, .turns = 1};
 
     m.end = *at;
-    m.end.at[AXIS_X] += way * maths_cos(heading_of(t, phi));
-    m.end.at[AXIS_Y] += way * maths_sin(heading_of(t, phi));
+    m.end.at[AXIS_X] += way * takt_maths_cos(heading_of(t, phi));
+    m.end.at[AXIS_Y] += way * takt_maths_sin(heading_of(t, phi));
     *at = m.end;
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 static void push_all(const struct task *t, struct point *at)
@@ -113,7 +120,7 @@ static void push_all(const struct task *t, struct point *at)
     m.end = point_of(t, t->to_rad);
     m.end.at[AXIS_Z] = t->rise_mm;
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
     *at = m.end;
 }
 
@@ -124,8 +131,8 @@ static struct point start_of(const struct task *t)
     if (t->lines) {
         const double way = t->to_rad > t->from_rad ? -5.0 : 5.0;
 
-        at.at[AXIS_X] += way * maths_cos(heading_of(t, t->from_rad));
-        at.at[AXIS_Y] += way * maths_sin(heading_of(t, t->from_rad));
+        at.at[AXIS_X] += way * takt_maths_cos(heading_of(t, t->from_rad));
+        at.at[AXIS_Y] += way * takt_maths_sin(heading_of(t, t->from_rad));
     }
     return at;
 }
@@ -142,34 +149,35 @@ static void run(const struct task *t, const struct plan_limits *limits, uint32_t
     unsigned pushed = 0;
 
     memset(&seen, 0, sizeof(seen));
-    path_init(&path, limits, &at);
-    motion_init(&motion, &path, &at, false);
+    takt_path_init(&path, limits, &at);
+    takt_motion_init(&motion, &path, &at, false);
     for (int axis = 0; axis < CHAIN_AXES; axis++) {
         for (int i = 0; i < 4; i++) {
             seen.history[axis][i] = at.at[axis];
         }
     }
     for (;;) {
-        if (motion_wanted(&motion) != NULL) {
-            path_go_on(&path);
-            while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < look_ahead) {
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_path_go_on(&path);
+            while (!path.finished && takt_path_has_room(&path) &&
+                   takt_motion_ahead(&motion) < look_ahead) {
                 if (pushed == 0) {
                     push_all(t, &at);
                 } else if (pushed == 1 && t->lines) {
                     push_line(t, &at, t->to_rad, 5.0);
                 } else {
-                    path_push(&path, &stop);
-                    path_finish(&path);
+                    takt_path_push(&path, &stop);
+                    takt_path_finish(&path);
                 }
                 pushed++;
             }
-            motion_build(&motion);
+            takt_motion_build(&motion);
         }
-        result = motion_cycle(&motion, &as_programmed, &record);
+        result = takt_motion_cycle(&motion, &as_programmed, &record);
         if (result != MOTION_CYCLE) {
             break;
         }
-        chain_judge_setpoint(&seen, limits, &record.cmd);
+        chain_verifier_setpoint(&seen, limits, &record.cmd);
         if (each != NULL) {
             each(t, &record);
         }

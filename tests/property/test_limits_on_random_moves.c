@@ -6,7 +6,7 @@
  * what breaks planners: corners of any angle, nearly collinear blocks, blocks shorter than a cycle, zigzags, arcs into
  * arcs, helices, arcs whose two radii differ (random_chain.h).
  *
- * test_limits_on_random_moves NUMBER runs so many seeds of each family and machine instead of SEEDS.
+ * test_limits_on_random_moves NUMBER runs this many seeds of each family and machine instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -31,7 +31,7 @@ static const struct plan_limits machines[] = {
      {50000, 50000, 50000},
      CYCLE_S,
      1e-3,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
     {7,
      {100, 60, 20},
@@ -39,16 +39,23 @@ static const struct plan_limits machines[] = {
      {50000, 8000, 200000},
      CYCLE_S,
      1e-3,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
-    {7, {500, 500, 500}, {200, 5000, 5000}, {1e6, 1e6, 1e5}, CYCLE_S, 1e-2, LAW_JERK, LANDING_SPAN},
+    {7,
+     {500, 500, 500},
+     {200, 5000, 5000},
+     {1e6, 1e6, 1e5},
+     CYCLE_S,
+     1e-2,
+     RAMP_PROFILE_JERK,
+     LANDING_SPAN},
 };
 
 static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
 static struct chain chain;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 static double landing_mm;
 
 void setUp(void)
@@ -65,29 +72,29 @@ static void push_next(enum chain_family family, unsigned number)
 
     if (number < MOVES) {
         m = chain_next(&chain, family, number);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(enum chain_family family, uint32_t look_ahead, unsigned *pushed)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < look_ahead) {
+    while (!path.finished && takt_path_has_room(&path) && takt_motion_ahead(&motion) < look_ahead) {
         push_next(family, (*pushed)++);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
-static void judge(const struct plan_limits *limits, const struct cycle_record *record)
+static void verifier(const struct plan_limits *limits, const struct cycle_record *record)
 {
-    chain_judge_setpoint(&seen, limits, &record->cmd);
+    chain_verifier_setpoint(&seen, limits, &record->cmd);
     for (int axis = 0; axis < CHAIN_AXES && record->landed; axis++) {
         const double off = record->cmd.at[axis] - motion_block(&motion)->move.end.at[axis];
 
@@ -106,15 +113,15 @@ static void run_chain(enum chain_family family, uint64_t chain_seed,
     chain = (struct chain){.seed = chain_seed};
     memset(&seen, 0, sizeof(seen));
     landing_mm = 0.0;
-    path_init(&path, limits, &chain.at);
-    motion_init(&motion, &path, &chain.at, false);
+    takt_path_init(&path, limits, &chain.at);
+    takt_motion_init(&motion, &path, &chain.at, false);
     for (;;) {
         plan(family, look_ahead, &pushed);
-        result = motion_cycle(&motion, &asked, &record);
+        result = takt_motion_cycle(&motion, &asked, &record);
         if (result != MOTION_CYCLE || motion.cycles > CYCLES_MAX) {
             break;
         }
-        judge(limits, &record);
+        verifier(limits, &record);
     }
     TEST_ASSERT_EQUAL(MOTION_DONE, result);
     TEST_ASSERT_EQUAL_MEMORY(&chain.at, &record.cmd, sizeof(chain.at));
@@ -147,10 +154,11 @@ static void check_family(enum chain_family family, uint32_t look_ahead)
 static void test_rare_chains_keep_the_limits(void)
 {
     check_chain(CHAIN_SPIRAL_ARCS, 163, 2, 256); /* braking took the room that a landing needed */
-    check_chain(CHAIN_CORNERS, 171, 1, 256); /* rest missed a joint by the rounding of its feed */
-    check_chain(CHAIN_HELICES, 153, 1, 256); /* likewise, by less */
+    check_chain(CHAIN_CORNERS, 171, 1,
+                256); /* rest missed a junction by the rounding of its feed */
+    check_chain(CHAIN_HELICES, 153, 1, 256);    /* likewise, by less */
     check_chain(CHAIN_SPIRAL_ARCS, 66, 0, 256); /* a span begins with blocks of half a window */
-    check_chain(CHAIN_MIXED, 25, 2, 1);         /* a joint was the end of all that was known */
+    check_chain(CHAIN_MIXED, 25, 2, 1);         /* a junction was the end of all that was known */
     check_chain(CHAIN_NEARLY_COLLINEAR, 34, 1,
                 1); /* and its continuation came too late to land on it */
     check_chain(CHAIN_NEARLY_COLLINEAR, 28, 1,

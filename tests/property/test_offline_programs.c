@@ -35,7 +35,7 @@ static struct parameters parameters;
 static struct program program;
 static uint64_t state;
 static char text[TEXT_MAX];
-static char place[80]; /* what is judged, for messages */
+static char place[80]; /* what is verified, for messages */
 static size_t length;
 
 /* ---- a machine with a curved field of errors ---- */
@@ -70,10 +70,10 @@ void setUp(void)
     struct diagnostic wrong;
 
     make_table();
-    TEST_ASSERT_TRUE(grid_set(&tables.volume, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_grid_set(&tables.volume, &table, &wrong));
     session = (struct session){.options = &options, .correction = &tables};
     machine_setup_set_default(&session.setup);
-    parameters_clear(&session.parameters.values);
+    takt_parameters_clear(&session.parameters.values);
     state = 1;
 }
 
@@ -332,12 +332,12 @@ static bool read_motions(const char *from, size_t size, struct motions *m)
     struct move move;
 
     parameters = session.parameters.values;
-    controller_program_config(&controller, &config);
-    source_open_text(&source, &reader, from, size);
-    program_open(&program, &config, &source);
+    takt_controller_program_config(&controller, &config);
+    takt_source_open_text(&source, &reader, from, size);
+    takt_program_open(&program, &config, &source);
     at = config.start;
     m->count = m->spindle = 0;
-    while ((result = program_next(&program, &move, &error)) == PROGRAM_MOVE) {
+    while ((result = takt_program_next(&program, &move, &error)) == PROGRAM_MOVE) {
         m->spindle += move.kind == MOVE_SPINDLE;
         if (!move_is_motion(&move))
             continue;
@@ -354,13 +354,13 @@ static bool is_good(void)
     return read_motions(text, length, &wanted);
 }
 
-/* ---- judging ---- */
+/* ---- verifying ---- */
 
 static void corrected(const struct move *move, const struct point *at, struct point *to)
 {
     struct point k;
 
-    correction_evaluate(&correction, at, move, &k);
+    takt_correction_evaluate(&correction, at, move, &k);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         to->at[i] = at->at[i] + k.at[i];
 }
@@ -379,7 +379,7 @@ static double distance_at(const struct curve *c, const struct move *move, double
 {
     struct point at, to;
 
-    curve_point(c, s, &at);
+    takt_curve_point(c, s, &at);
     corrected(move, &at, &to);
     return distance(&to, from);
 }
@@ -405,17 +405,18 @@ static double nearest(const struct curve *c, const struct move *move, double ste
 #define SAMPLES 7
 
 /* One piece of the written program along the corrected path of a motion, from *s on. */
-static double judge_piece(const struct curve *c, const struct move *move, unsigned piece, double *s)
+static double verifier_piece(const struct curve *c, const struct move *move, unsigned piece,
+                             double *s)
 {
     struct curve w;
     double worst = 0;
 
-    if (!move_curve(&written.move[piece], &written.start[piece], &w))
+    if (!takt_move_curve(&written.move[piece], &written.start[piece], &w))
         return 0;
     for (unsigned i = 1; i <= SAMPLES; i++) {
         struct point at;
 
-        curve_point(&w, w.length_mm * i / SAMPLES, &at);
+        takt_curve_point(&w, w.length_mm * i / SAMPLES, &at);
         worst = maths_max(worst, nearest(c, move, w.length_mm / SAMPLES, &at, s));
     }
     return worst;
@@ -426,7 +427,7 @@ static bool ends_at(const struct move *move, const struct point *end)
     return distance(&move->end, end) < ROUNDING_MM;
 }
 
-/* Of an arc that hardly turns, errors leave no arc. */
+/* Errors leave no arc of one that hardly turns. */
 static bool is_kind(const struct move *move, const struct move *as_written)
 {
     const bool curved = move_is_arc(move) || move_is_involute(move);
@@ -441,7 +442,7 @@ static bool is_thread(const struct move *move)
 }
 
 /* A thread stays one motion, and has as many turns as programmed. */
-static unsigned judge_thread(unsigned motion, unsigned piece, const struct curve *c)
+static unsigned verifier_thread(unsigned motion, unsigned piece, const struct curve *c)
 {
     const struct move *move = &wanted.move[motion];
     const struct move *as_written = &written.move[piece];
@@ -450,23 +451,23 @@ static unsigned judge_thread(unsigned motion, unsigned piece, const struct curve
 
     corrected(move, &move->end, &end);
     TEST_ASSERT_TRUE_MESSAGE(ends_at(as_written, &end), place);
-    TEST_ASSERT_TRUE_MESSAGE(move_curve(as_written, &written.start[piece], &w), place);
+    TEST_ASSERT_TRUE_MESSAGE(takt_move_curve(as_written, &written.start[piece], &w), place);
     TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-5, c->length_mm / move->feed_rev_mm,
                                       w.length_mm / as_written->feed_rev_mm, place);
     return piece + 1;
 }
 
 /* The pieces of one motion; returns the number of the one behind them. */
-static unsigned judge_motion(unsigned motion, unsigned piece, double *worst)
+static unsigned verifier_motion(unsigned motion, unsigned piece, double *worst)
 {
     const struct move *move = &wanted.move[motion];
     struct point end;
     struct curve c;
     double s = 0;
-    const bool has_curve = move_curve(move, &wanted.start[motion], &c);
+    const bool has_curve = takt_move_curve(move, &wanted.start[motion], &c);
 
     if (has_curve && is_thread(move))
-        return judge_thread(motion, piece, &c);
+        return verifier_thread(motion, piece, &c);
     corrected(move, &move->end, &end);
     for (;; piece++) {
         TEST_ASSERT_TRUE_MESSAGE(piece < written.count, place);
@@ -475,7 +476,7 @@ static unsigned judge_motion(unsigned motion, unsigned piece, double *worst)
                                           place);
         TEST_ASSERT_EQUAL_UINT_MESSAGE(move->overrides, written.move[piece].overrides, place);
         if (has_curve && move->kind != MOVE_RAPID)
-            *worst = maths_max(*worst, judge_piece(&c, move, piece, &s));
+            *worst = maths_max(*worst, verifier_piece(&c, move, piece, &s));
         if (ends_at(&written.move[piece], &end) &&
             (!has_curve || move->kind == MOVE_RAPID || s > c.length_mm - 0.02))
             return piece + 1;
@@ -496,7 +497,7 @@ static void correct(char **out, size_t *size, struct offline_totals *totals)
     TEST_ASSERT_EQUAL_INT(0, fclose(config.out));
 }
 
-static double judge_program(void)
+static double verifier_program(void)
 {
     struct offline_totals totals;
     double worst = 0;
@@ -508,12 +509,12 @@ static double judge_program(void)
     if (!read_motions(out, size, &written)) {
         char why[DIAGNOSTIC_TEXT_MAX];
 
-        (void)diagnostic_text(&error, why);
+        (void)takt_diagnostic_text(&error, why);
         printf("%s: what is written, line %u: %s\n", place, (unsigned)error.line, why);
         TEST_FAIL();
     }
     for (unsigned i = 0; i < wanted.count; i++)
-        piece = judge_motion(i, piece, &worst);
+        piece = verifier_motion(i, piece, &worst);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(written.count, piece, place);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(wanted.spindle, written.spindle, place);
     TEST_ASSERT_TRUE_MESSAGE(worst <= TOLERANCE_MM + ROUNDING_MM, place);
@@ -526,24 +527,24 @@ static unsigned programs = PROGRAMS, first_seed;
 static void test_what_is_written_follows_the_corrected_path(void)
 {
     const struct point start = {{0}};
-    unsigned judged = 0, motions = 0, pieces = 0;
+    unsigned verified = 0, motions = 0, pieces = 0;
     double worst = 0;
 
-    correction_init(&correction, &session.setup.machine.correction, 7, 0.001, &tables, &start);
+    takt_correction_init(&correction, &session.setup.machine.correction, 7, 0.001, &tables, &start);
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
         say_program(seed);
         if (!is_good())
             continue;
         (void)snprintf(place, sizeof place, "seed %u", seed);
-        worst = maths_max(worst, judge_program());
-        judged++;
+        worst = maths_max(worst, verifier_program());
+        verified++;
         motions += wanted.count;
         pieces += written.count;
     }
-    printf("%u programs, %u motions in %u pieces, at most %.6f mm off the corrected path\n", judged,
-           motions, pieces, worst);
+    printf("%u programs, %u motions in %u pieces, at most %.6f mm off the corrected path\n",
+           verified, motions, pieces, worst);
     TEST_ASSERT_TRUE_MESSAGE(100 * lines < pieces, "arcs and involutes stay what they are");
-    TEST_ASSERT_GREATER_THAN(programs / 2, judged);
+    TEST_ASSERT_GREATER_THAN(programs / 2, verified);
 }
 
 int main(int argc, char **argv)

@@ -1,9 +1,9 @@
 /*
- * Whatever the operator does: random programs on random machines with every law, under random schedules of feed
+ * Whatever the operator does: random programs on random machines with every profile, under random schedules of feed
  * override, rapid override and hold. The setpoints keep every axis's limits by differences, landed ends are hit, the
  * program is completed, and nothing stops that neither the program nor the operator asked to.
  *
- * test_overrides NUMBER runs so many programs instead of PROGRAMS, test_overrides NUMBER FIRST from that seed on,
+ * test_overrides NUMBER runs this many programs instead of PROGRAMS, test_overrides NUMBER FIRST from that seed on,
  * test_overrides NUMBER FIRST BLOCKS with this look-ahead instead of a random one.
  */
 #include "motion/motion.h"
@@ -25,7 +25,7 @@
 /* After this many cycles without hold everything that a hold has begun is over. */
 #define HOLD_IS_OVER_CYCLES 1200
 
-/* With fewer blocks the lead point may come to the end of what is known, and waits there for more. */
+/* With fewer blocks the trapezoidal reference may come to the end of what is known, and waits there for more. */
 #define LOOK_AHEAD_ENOUGH 8
 
 static struct path path;
@@ -43,7 +43,7 @@ struct run {
     unsigned moves;
     unsigned pushed;
     struct schedule schedule;
-    struct chain_judge judge;
+    struct chain_verifier verifier;
     double landing_mm;
     unsigned unplanned;
     uint64_t unplanned_cycle;
@@ -76,24 +76,25 @@ static void push_next(struct run *r)
     if (r->pushed < r->moves) {
         m = chain_next(&r->chain, r->family, r->pushed);
         r->pushed++;
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < r->look_ahead) {
+    while (!path.finished && takt_path_has_room(&path) &&
+           takt_motion_ahead(&motion) < r->look_ahead) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static double distance(const struct point *a, const struct point *b)
@@ -107,9 +108,9 @@ static double distance(const struct point *a, const struct point *b)
 }
 
 /* The axes have just come to rest where no block ends, and nothing has been held for long. */
-static void judge_rest(struct run *r, const struct cycle_record *record)
+static void verifier_rest(struct run *r, const struct cycle_record *record)
 {
-    const bool rests = motion.lead.feed == 0.0 && motion.lag == 0.0;
+    const bool rests = motion.reference.feed == 0.0 && motion.lag == 0.0;
 
     if (rests && !r->rested && !record->landed && r->look_ahead >= LOOK_AHEAD_ENOUGH &&
         r->schedule.free > HOLD_IS_OVER_CYCLES) {
@@ -119,10 +120,10 @@ static void judge_rest(struct run *r, const struct cycle_record *record)
     r->rested = rests;
 }
 
-static void judge(struct run *r, const struct cycle_record *record)
+static void verifier(struct run *r, const struct cycle_record *record)
 {
-    chain_judge_setpoint(&r->judge, &r->limits, &record->cmd);
-    judge_rest(r, record);
+    chain_verifier_setpoint(&r->verifier, &r->limits, &record->cmd);
+    verifier_rest(r, record);
     if (record->landed) {
         const double off_mm = distance(&record->cmd, &motion_block(&motion)->move.end);
 
@@ -152,14 +153,14 @@ static enum motion_result run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, r->proportional);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, r->proportional);
     do {
         schedule_follow(&r->schedule, &r->chain, motion.cycles);
         plan(r);
-        result = motion_cycle(&motion, &r->schedule.now, &record);
+        result = takt_motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
-            judge(r, &record);
+            verifier(r, &record);
         }
     } while (result == MOTION_CYCLE && motion.cycles < CYCLES_MAX);
     r->landing_mm = maths_max(r->landing_mm, distance(&r->chain.at, &record.cmd));
@@ -168,9 +169,9 @@ static enum motion_result run_program(struct run *r)
 
 static bool holds(const struct run *r, enum motion_result result)
 {
-    return result == MOTION_DONE && r->judge.velocity <= 1.0001 &&
-           r->judge.acceleration <= 1.0001 && r->judge.jerk <= 1.001 && r->landing_mm <= 1e-9 &&
-           r->unplanned == 0;
+    return result == MOTION_DONE && r->verifier.velocity <= 1.0001 &&
+           r->verifier.acceleration <= 1.0001 && r->verifier.jerk <= 1.001 &&
+           r->landing_mm <= 1e-9 && r->unplanned == 0;
 }
 
 /* Every program that fails is told; false: this one. */
@@ -186,8 +187,8 @@ static bool check_program(unsigned seed)
         "seed %u, look-ahead %u: %s, v %.6f, a %.6f, j %.6f of the limits, ends missed by %.3g mm, "
         "%u unplanned stops, the last in cycle %llu\n",
         seed, (unsigned)run.look_ahead, result == MOTION_DONE ? "completed" : "not completed",
-        run.judge.velocity, run.judge.acceleration, run.judge.jerk, run.landing_mm, run.unplanned,
-        (unsigned long long)run.unplanned_cycle);
+        run.verifier.velocity, run.verifier.acceleration, run.verifier.jerk, run.landing_mm,
+        run.unplanned, (unsigned long long)run.unplanned_cycle);
     return false;
 }
 
@@ -217,11 +218,12 @@ static void check_pinned(unsigned seed, uint32_t look_ahead)
 static void test_rare_programs_keep_the_limits(void)
 {
     check_pinned(5893, 8);   /* what came into view asked for more than had been promised */
-    check_pinned(4898, 8);   /* and was refused until the lead point stood */
+    check_pinned(4898, 8);   /* and was refused until the trapezoidal reference stood */
     check_pinned(3322, 256); /* a higher override began a slow block's ceiling earlier */
-    check_pinned(870, 256);  /* the override fell while the lead point could not brake yet */
-    check_pinned(28, 8);     /* a span was begun with another window than the next ceiling's */
-    check_pinned(278, 256);  /* a joint's feed was lowered too late to come down to it */
+    check_pinned(870,
+                 256);   /* the override fell while the trapezoidal reference could not brake yet */
+    check_pinned(28, 8); /* a span was begun with another window than the next ceiling's */
+    check_pinned(278, 256);  /* a junction's feed was lowered too late to come down to it */
     check_pinned(911, 8);    /* a lower override, and an acceleration that changes within a block */
     check_pinned(467, 1);    /* what had been come to was not known for that by the next ceiling */
     check_pinned(1153, 1);   /* too early in a block of less acceleration to stop in it */

@@ -85,9 +85,9 @@ static void read_lines(unsigned long lines)
         config.travel_min[axis] = -500.0;
         config.travel_max[axis] = 500.0;
     }
-    parameters_clear(&parameters);
-    program_open(&program, &config, &source);
-    while (program_next(&program, &move, &error) == PROGRAM_MOVE) {
+    takt_parameters_clear(&parameters);
+    takt_program_open(&program, &config, &source);
+    while (takt_program_next(&program, &move, &error) == PROGRAM_MOVE) {
         moves += move_is_motion(&move) ? 1 : 0;
     }
     TEST_ASSERT_EQUAL_UINT64(lines, moves);

@@ -255,7 +255,7 @@ static void check_error(const struct diagnostic *d)
 
     TEST_ASSERT_TRUE_MESSAGE(d->code < 0 && d->column <= PROGRAM_LINE_MAX + 1, text);
     TEST_ASSERT_TRUE_MESSAGE(d->line > 0 || d->code == TAKT_ERROR_FROM_LINE_MISSED, text);
-    TEST_ASSERT_TRUE_MESSAGE(diagnostic_text(d, message) > 0, text);
+    TEST_ASSERT_TRUE_MESSAGE(takt_diagnostic_text(d, message) > 0, text);
 }
 
 /* A text that cannot be read any more once so much of it has been. */
@@ -297,10 +297,10 @@ static void open_program(struct worn_text *worn, size_t length)
     }
     config.block_delete = random_below(2) == 0;
     config.from_line = random_below(8) == 0 ? 1 + random_below(LINES) : 0;
-    parameters_clear(&parameters);
+    takt_parameters_clear(&parameters);
     worn->left = READ_MAX;
-    source_open_text(&worn->text, &worn->context, text, length);
-    program_open(&program, &config, &source);
+    takt_source_open_text(&worn->text, &worn->context, text, length);
+    takt_program_open(&program, &config, &source);
 }
 
 /* Counts the moves and the errors. */
@@ -313,7 +313,7 @@ static void run_program(size_t length, unsigned *moves, unsigned *errors)
 
     open_program(&worn, length);
     for (unsigned steps = 0; steps < STEPS_MAX; steps++) {
-        result = program_next(&program, &move, &diagnostic);
+        result = takt_program_next(&program, &move, &diagnostic);
         if (result == PROGRAM_END) {
             break;
         }
@@ -327,7 +327,7 @@ static void run_program(size_t length, unsigned *moves, unsigned *errors)
             }
         }
     }
-    while (program_warning(&program, &diagnostic)) {
+    while (takt_program_warning(&program, &diagnostic)) {
         check_error(&diagnostic);
     }
 }

@@ -4,7 +4,7 @@
  * differences, every landed end is hit, and the program ends in the time that its feeds and the limits explain. So they do
  * whatever the operator does: overrides, holds, single block, stops and resets in any cycle.
  *
- *     test_rotary_moves NUMBER FIRST        so many programs, from this seed on, of each test
+ *     test_rotary_moves NUMBER FIRST        NUMBER programs, from this seed on, of each test
  *
  * Machines and programs are drawn by dimensionless numbers on a log scale.
  */
@@ -40,7 +40,7 @@ struct run {
     unsigned moves;
     struct move move[MOVES_MAX];
     double least_s; /* by the programmed feeds */
-    double most_s;  /* each move by itself, with what arcs and joints leave of the limits */
+    double most_s;  /* each move by itself, with what arcs and junctions leave of the limits */
     struct point end;
 };
 
@@ -82,8 +82,8 @@ static bool chance(double part)
 /* -- machines -- */
 
 /*
- * Of one axis: velocity, the time in which it is reached at full acceleration, and that in which full acceleration is
- * reached. The latter is what a ramp law's longest box allows, at most.
+ * Limits of one axis: velocity, the time in which it is reached at full acceleration, and that in which full
+ * acceleration is reached. The latter is what a ramp profile's longest box allows, at most.
  */
 static void draw_axis(unsigned axis, double unit)
 {
@@ -100,14 +100,16 @@ static void draw_axis(unsigned axis, double unit)
 
 static void draw_machine(void)
 {
-    static const enum law laws[] = {LAW_JERK, LAW_JERK, LAW_JERK, LAW_SMOOTH, LAW_GENTLE};
+    static const enum ramp_profile profiles[] = {RAMP_PROFILE_JERK, RAMP_PROFILE_JERK,
+                                                 RAMP_PROFILE_JERK, RAMP_PROFILE_SMOOTH,
+                                                 RAMP_PROFILE_GENTLE};
     const unsigned rotary = (unsigned)between(0.0, 4.0);
     struct plan_limits *l = &run.limits;
 
     memset(l, 0, sizeof(*l));
-    l->cycle_s = 0.25e-3 * maths_power(2.0, maths_floor(between(0.0, 5.0)));
+    l->cycle_s = 0.25e-3 * takt_maths_power(2.0, takt_maths_floor(between(0.0, 5.0)));
     l->chord_error_max_mm = decades(-3.0, 0.0);
-    l->law = laws[(unsigned)between(0.0, 5.0)];
+    l->profile = profiles[(unsigned)between(0.0, 5.0)];
     l->landing = chance(0.2) ? LANDING_BLOCK : LANDING_SPAN;
     for (unsigned axis = 0; axis < AXIS_LINEAR_COUNT + rotary; axis++) {
         draw_axis(axis, axis < AXIS_LINEAR_COUNT ? 100.0 : MATHS_PI);
@@ -136,7 +138,7 @@ static bool has_axis(unsigned axis)
     return (run.limits.axes & 1U << axis) != 0;
 }
 
-/* Of a line: each kind of axes from nothing to the longest way. */
+/* A line: each kind of axes from nothing to the longest way. */
 static void draw_line(struct move *m, const struct point *from)
 {
     const double linear_mm = chance(0.2) ? 0.0 : decades(-9.0, 2.0);
@@ -175,10 +177,10 @@ static void draw_arc(struct move *m, const struct point *from)
 
     draw_line(m, from);
     m->kind = way < 0 ? MOVE_ARC_CW : MOVE_ARC_CCW;
-    m->centre_mm[0] = from->at[AXIS_X] - radius * maths_cos(heading);
-    m->centre_mm[1] = from->at[AXIS_Y] - radius * maths_sin(heading);
-    m->end.at[AXIS_X] = m->centre_mm[0] + radius * off_circle * maths_cos(heading + way);
-    m->end.at[AXIS_Y] = m->centre_mm[1] + radius * off_circle * maths_sin(heading + way);
+    m->centre_mm[0] = from->at[AXIS_X] - radius * takt_maths_cos(heading);
+    m->centre_mm[1] = from->at[AXIS_Y] - radius * takt_maths_sin(heading);
+    m->end.at[AXIS_X] = m->centre_mm[0] + radius * off_circle * takt_maths_cos(heading + way);
+    m->end.at[AXIS_Y] = m->centre_mm[1] + radius * off_circle * takt_maths_sin(heading + way);
     if (chance(0.5)) {
         m->end.at[AXIS_Z] = from->at[AXIS_Z];
     }
@@ -215,7 +217,7 @@ static double least_time(const struct move *m, const struct curve *c)
     double a = MATHS_INFINITY;
     struct curve_bounds b;
 
-    curve_bound(c, &b);
+    takt_curve_bound(c, &b);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (b.first[i] > 0.0) {
             a = maths_min(a, l->acceleration_mm_s2[i] / b.first[i]);
@@ -227,34 +229,34 @@ static double least_time(const struct move *m, const struct curve *c)
 }
 
 /*
- * Time of a move from rest to rest, L/v + v/a + a/j, a by the longest box, in the parts that arcs and joints leave; twice the
+ * Time of a move from rest to rest, L/v + v/a + a/j, a by the longest box, in the parts that arcs and junctions leave; twice the
  * ramps, and some windows of cycles, for feeds that are kept before they change.
  */
 static double most_time(const struct move *m, const struct curve *c)
 {
     const struct plan_limits *l = &run.limits;
-    const bool bent = c->kind == CURVE_ARC;
+    const bool curved = c->kind == CURVE_ARC;
     double v = m->kind == MOVE_RAPID ? MATHS_INFINITY : m->feed_mm_s;
     double a = MATHS_INFINITY;
     double j = MATHS_INFINITY;
     struct curve_bounds b;
 
-    curve_bound(c, &b);
+    takt_curve_bound(c, &b);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (has_axis(i) && b.first[i] > 0.0) {
             v = maths_min(v, l->velocity_mm_s[i] / b.first[i]);
-            a = maths_min(a, (bent ? 0.1 : 0.9) * l->acceleration_mm_s2[i] / b.first[i]);
-            j = maths_min(j, (bent ? 0.1 : 0.5) * l->jerk_mm_s3[i] / b.first[i]);
+            a = maths_min(a, (curved ? 0.1 : 0.9) * l->acceleration_mm_s2[i] / b.first[i]);
+            j = maths_min(j, (curved ? 0.1 : 0.5) * l->jerk_mm_s3[i] / b.first[i]);
         }
         if (has_axis(i) && b.second[i] > 0.0) {
             v = maths_min(v, maths_sqrt(0.1 * l->acceleration_mm_s2[i] / b.second[i]));
-            v = maths_min(v, maths_cbrt(0.05 * l->jerk_mm_s3[i] / b.third[i]));
+            v = maths_min(v, takt_maths_cbrt(0.05 * l->jerk_mm_s3[i] / b.third[i]));
         }
     }
-    if (bent && b.radius_min_mm > l->chord_error_max_mm) {
+    if (curved && b.radius_min_mm > l->chord_error_max_mm) {
         v = maths_min(v, maths_sqrt(b.radius_min_mm * l->chord_error_max_mm) / l->cycle_s);
     }
-    a = maths_min(a, j * l->cycle_s * (double)law_cycles_max(l->law));
+    a = maths_min(a, j * l->cycle_s * (double)takt_ramp_profile_cycles_max(l->profile));
     return c->length_mm / v + 2.0 * v / a + 2.0 * a / j + 300.0 * l->cycle_s;
 }
 
@@ -285,7 +287,7 @@ static void draw_program(void)
         struct curve c;
 
         draw_move(m, &before, &at);
-        if (move_curve(m, &at, &c)) {
+        if (takt_move_curve(m, &at, &c)) {
             draw_feed(m, &c);
             run.least_s += least_time(m, &c);
             run.most_s += most_time(m, &c);
@@ -318,7 +320,7 @@ static void draw(unsigned number, bool operated)
     }
 }
 
-/* -- the judge -- */
+/* -- the verifier -- */
 
 /* What is more than so much rounding of setpoints, as a part of a limit. */
 static double part_of(double difference, double rounding, double limit)
@@ -326,7 +328,7 @@ static double part_of(double difference, double rounding, double limit)
     return maths_max(0.0, maths_abs(difference) - rounding) / limit;
 }
 
-static void judge_axis(unsigned i)
+static void verifier_axis(unsigned i)
 {
     const struct plan_limits *l = &run.limits;
     const double t = l->cycle_s;
@@ -342,13 +344,13 @@ static void judge_axis(unsigned i)
     seen.jerk = maths_max(seen.jerk, part_of(j, 8.0 * ulp, l->jerk_mm_s3[i] * t * t * t));
 }
 
-static void judge(const struct cycle_record *record)
+static void verifier(const struct cycle_record *record)
 {
     memmove(seen.at + 1, seen.at, 3 * sizeof(seen.at[0]));
     seen.at[0] = record->cmd;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (has_axis(i)) {
-            judge_axis(i);
+            verifier_axis(i);
         }
     }
     seen.missed = seen.missed || (record->landed &&
@@ -363,25 +365,25 @@ static void push(unsigned *pushed)
     struct move end;
 
     if (*pushed < run.moves && !run.hands.reset) {
-        path_push(&path, &run.move[(*pushed)++]);
+        takt_path_push(&path, &run.move[(*pushed)++]);
         return;
     }
     memset(&end, 0, sizeof(end));
     end.kind = MOVE_END;
-    path_push(&path, &end);
-    path_finish(&path);
+    takt_path_push(&path, &end);
+    takt_path_finish(&path);
 }
 
 static void fill(unsigned *pushed)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && !motion.ending && path_has_room(&path) &&
-           motion_ahead(&motion) < run.look_ahead) {
+    while (!path.finished && !motion.ending && takt_path_has_room(&path) &&
+           takt_motion_ahead(&motion) < run.look_ahead) {
         push(pushed);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static void change(void)
@@ -406,14 +408,14 @@ static enum motion_result run_program(void)
     unsigned pushed = 0;
 
     memset(&seen, 0, sizeof(seen));
-    path_init(&path, &run.limits, &record.cmd);
-    motion_init(&motion, &path, &record.cmd, false);
+    takt_path_init(&path, &run.limits, &record.cmd);
+    takt_motion_init(&motion, &path, &record.cmd, false);
     while (result == MOTION_CYCLE && (double)motion.cycles <= most_cycles) {
         fill(&pushed);
         change();
-        result = motion_cycle(&motion, &run.asked, &record);
+        result = takt_motion_cycle(&motion, &run.asked, &record);
         if (result == MOTION_CYCLE) {
-            judge(&record);
+            verifier(&record);
             hands_hold_at_end(&run.hands, &motion, &record);
         }
     }

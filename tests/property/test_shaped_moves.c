@@ -2,7 +2,7 @@
  * Planner, motion and shaping together, on random chains and random machines with random modes: setpoints that are sent keep
  * the axes' limits by differences, and where they come to rest nothing of any mode is left.
  *
- * test_shaped_moves NUMBER [FIRST] runs so many seeds from FIRST on instead of SEEDS.
+ * test_shaped_moves NUMBER [FIRST] runs this many seeds from FIRST on instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -28,7 +28,7 @@ static struct path path;
 static struct motion motion;
 static struct shape shape;
 static struct vibration swings;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 
 /* Lengths in mm, times in s. */
 struct task {
@@ -78,13 +78,13 @@ static struct task random_task(uint64_t task_seed)
     const double a = chain_decades(&c, 2.0, 4.0);
 
     t.limits.cycle_s = t.shape.cycle_s = cycle_s;
-    t.limits.law = chain_between(&c, 0, 1) < 0.7 ? LAW_JERK : LAW_SMOOTH;
+    t.limits.profile = chain_between(&c, 0, 1) < 0.7 ? RAMP_PROFILE_JERK : RAMP_PROFILE_SMOOTH;
     for (unsigned i = 0; i < CHAIN_AXES; i++) {
         t.limits.acceleration_mm_s2[i] = a * chain_decades(&c, -0.3, 0.3);
         t.limits.jerk_mm_s3[i] = a / ramp_s * chain_decades(&c, -0.3, 0.3);
         t.limits.velocity_mm_s[i] = a * ramp_s * chain_decades(&c, 0.0, 1.0);
     }
-    t.shape.train = zv_train;
+    t.shape.train = takt_zv_train;
     t.shape.keeps_way = chain_between(&c, 0, 1) < 0.5;
     t.family = (enum chain_family)chain_between(&c, 0, CHAIN_MIXED + 0.99);
     random_modes(&c, &t, ramp_s);
@@ -98,10 +98,10 @@ static void push_moves(struct chain *c, const struct task *t)
     for (unsigned i = 0; i < MOVES; i++) {
         struct move m = chain_next(c, t->family, i);
 
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
-    path_push(&path, &end);
-    path_finish(&path);
+    takt_path_push(&path, &end);
+    takt_path_finish(&path);
 }
 
 /* What goes on swinging on the tool's side of an axis: (away, rate) of each mode by its amplitude. */
@@ -131,11 +131,11 @@ static void check_rest(const struct task *t, uint64_t seed)
     }
 }
 
-/* What is sent instead of the setpoint, judged and followed by the modes; also when the program is done. */
+/* What is sent instead of the setpoint, verified and followed by the modes; also when the program is done. */
 static void send(const struct task *t, struct point at)
 {
-    shape_cycle(&shape, &at);
-    chain_judge_setpoint(&seen, &t->limits, &at);
+    takt_shape_cycle(&shape, &at);
+    chain_verifier_setpoint(&seen, &t->limits, &at);
     vibration_follow(&swings, &at);
 }
 
@@ -148,15 +148,15 @@ static unsigned run(const struct task *t, uint64_t seed)
     bool rested = true;
 
     while (cycle == MOTION_CYCLE && motion.cycles < CYCLES_MAX) {
-        const bool rests_now = shape_is_settled(&shape);
+        const bool rests_now = takt_shape_is_settled(&shape);
 
-        if (motion_wanted(&motion) != NULL) {
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_motion_build(&motion);
         }
         as_programmed.settles = !rests_now;
-        cycle = motion_cycle(&motion, &as_programmed, &record);
+        cycle = takt_motion_cycle(&motion, &as_programmed, &record);
         send(t, record.cmd);
-        if (rests_now && !rested && shape_is_settled(&shape)) {
+        if (rests_now && !rested && takt_shape_is_settled(&shape)) {
             rests++;
             check_rest(t, seed);
         }
@@ -175,12 +175,12 @@ static void run_seed(uint64_t seed)
     char text[80];
 
     memset(&seen, 0, sizeof seen);
-    TEST_ASSERT_NULL(shape_init(&shape, &t.shape));
-    shape_leave(&shape, &limits);
+    TEST_ASSERT_NULL(takt_shape_init(&shape, &t.shape));
+    takt_shape_leave(&shape, &limits);
     vibration_init(&swings, &t.modes, limits.cycle_s);
     vibration_follow(&swings, &(struct point){{0}});
-    path_init(&path, &limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     push_moves(&c, &t);
     (void)snprintf(text, sizeof text, "seed %lu", (unsigned long)seed);
     TEST_ASSERT_TRUE_MESSAGE(run(&t, seed) > 0, text);

@@ -3,17 +3,17 @@
  * and resets: random programs of short blocks on machines drawn by dimensionless numbers, on the exact path and smoothed.
  * The setpoints keep every axis's limits by differences and the order along the path, lie on it or within the tolerance,
  * landed ends are hit exactly, and the motion ends. Switched on for good, every motion ends at rest. Smoothed paths are
- * judged a second time by the walk of `hunt`: is there a monotone match within the tolerance?
+ * verified a second time by the walk of `hunt`: is there a monotone match within the tolerance?
  *
- * test_single_block NUMBER runs so many programs of each kind instead of PROGRAMS, test_single_block NUMBER FIRST from
- * that seed on.
+ * test_single_block NUMBER runs this many programs of each kind instead of PROGRAMS, test_single_block NUMBER FIRST
+ * from that seed on.
  */
 #include "chain_distance.h"
 #include "motion/motion.h"
 #include "plan/path.h"
 #include "property_arguments.h"
 #include "random_schedule.h"
-#include "support/second_judge.h"
+#include "support/second_verifier.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +36,7 @@
 /* After this many cycles without hold or switch everything that they have begun is over. */
 #define OVER_CYCLES 1200
 
-/* With fewer blocks the lead point may come to the end of what is known, and waits there for more. */
+/* With fewer blocks the trapezoidal reference may come to the end of what is known, and waits there for more. */
 #define LOOK_AHEAD_ENOUGH 8
 
 static struct path path;
@@ -63,7 +63,7 @@ struct run {
     struct point end;
     struct programmed move[MOVES_MAX];
     struct hands hands;
-    struct chain_judge judge;
+    struct chain_verifier verifier;
     struct point last;
     double path_mm, corner_mm, landing_mm;
     unsigned block; /* of the last setpoint, */
@@ -97,7 +97,7 @@ static void random_machine(struct run *r)
     l->axes = 7;
     l->cycle_s = 0.25e-3 * chain_decades(c, 0, 1.2);
     l->chord_error_max_mm = chain_decades(c, -4, -2);
-    l->law = (enum law)chain_between(c, 0, 3);
+    l->profile = (enum ramp_profile)chain_between(c, 0, 3);
     l->landing = chain_between(c, 0, 1) < 0.8 ? LANDING_SPAN : LANDING_BLOCK;
     const double v = chain_decades(c, 1, 3);
     const double a = v / (l->cycle_s * chain_decades(c, 0.7, 2.7));
@@ -137,13 +137,13 @@ static struct move short_line(struct chain *c)
     m.kind = MOVE_FEED;
     m.feed_mm_s = chain_decades(c, 0, 2.3);
     for (int i = 0; i < CHAIN_AXES; i++) {
-        m.end.at[i] = 0.001 * maths_round(1000.0 * m.end.at[i]);
+        m.end.at[i] = 0.001 * takt_maths_round(1000.0 * m.end.at[i]);
     }
     c->at = m.end;
     return m;
 }
 
-/* The next move, kept to judge by. */
+/* The next move, kept to verify by. */
 static struct move next_move(struct run *r)
 {
     struct programmed *kept = &r->move[r->pushed];
@@ -153,7 +153,7 @@ static struct move next_move(struct run *r)
 
     m.path = r->tolerance_mm > 0.0 ? PATH_BLEND : PATH_EXACT;
     m.tolerance_mm = r->tolerance_mm;
-    kept->has_length = move_curve(&m, &r->end, &kept->curve);
+    kept->has_length = takt_move_curve(&m, &r->end, &kept->curve);
     kept->corner_mm = MATHS_INFINITY;
     if (kept->has_length && r->tolerance_mm > 0.0) {
         second_add_motion(&m);
@@ -170,29 +170,29 @@ static void push_next(struct run *r)
 
     if (r->pushed < r->moves && !r->hands.reset) {
         m = next_move(r);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && !motion.ending && path_has_room(&path) &&
-           (r->tolerance_mm > 0.0 || motion_ahead(&motion) < r->look_ahead)) {
+    takt_path_go_on(&path);
+    while (!path.finished && !motion.ending && takt_path_has_room(&path) &&
+           (r->tolerance_mm > 0.0 || takt_motion_ahead(&motion) < r->look_ahead)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
-/* -- judging -- */
+/* -- verifying -- */
 
 /* Where on a curve, from a place near it on. */
 static double place_on(const struct curve *c, const struct point *p, double s)
@@ -203,8 +203,8 @@ static double place_on(const struct curve *c, const struct point *p, double s)
     for (int k = 0; k < 4; k++) {
         double along = 0.0;
 
-        curve_point(c, s, &on);
-        curve_tangent(c, s, &t);
+        takt_curve_point(c, s, &on);
+        takt_curve_tangent(c, s, &t);
         for (int i = 0; i < CHAIN_AXES; i++) {
             along += (p->at[i] - on.at[i]) * t.at[i];
         }
@@ -214,13 +214,13 @@ static double place_on(const struct curve *c, const struct point *p, double s)
 }
 
 /* On the curve of the block that it is said to be in, and not before the last one. */
-static void judge_exact(struct run *r, const struct cycle_record *record)
+static void verifier_exact(struct run *r, const struct cycle_record *record)
 {
     const struct curve *c = &r->move[record->block - 1].curve;
     const double s_mm = place_on(c, &record->cmd, record->block == r->block ? r->s_mm : 0.0);
     struct point on;
 
-    curve_point(c, s_mm, &on);
+    takt_curve_point(c, s_mm, &on);
     r->path_mm = maths_max(r->path_mm, chain_distance(&on, &record->cmd));
     r->backward +=
         record->block < r->block || (record->block == r->block && s_mm < r->s_mm - PLACE_MM);
@@ -229,21 +229,21 @@ static void judge_exact(struct run *r, const struct cycle_record *record)
 }
 
 /* No place on a curve is farther from its start than its length. */
-static void judge_curve(const struct curve *c, const struct point *p, double *least)
+static void verifier_curve(const struct curve *c, const struct point *p, double *least)
 {
     if (chain_distance(p, &c->start) - c->length_mm < *least) {
         *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
 
-static void judge_corner(struct programmed *m, const struct point *from, const struct point *to)
+static void verifier_corner(struct programmed *m, const struct point *from, const struct point *to)
 {
     if (chain_distance(to, &m->curve.end) - chain_distance(from, to) < m->corner_mm) {
         m->corner_mm = maths_min(m->corner_mm, chain_corner_distance(&m->curve.end, from, to));
     }
 }
 
-static void judge_smooth(struct run *r, const struct cycle_record *record)
+static void verifier_smooth(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->pushed ? record->block + AROUND : r->pushed;
@@ -251,8 +251,8 @@ static void judge_smooth(struct run *r, const struct cycle_record *record)
 
     for (unsigned i = first; i < last; i++) {
         if (r->move[i].has_length) {
-            judge_curve(&r->move[i].curve, &record->cmd, &least);
-            judge_corner(&r->move[i], &r->last, &record->cmd);
+            verifier_curve(&r->move[i].curve, &record->cmd, &least);
+            verifier_corner(&r->move[i], &r->last, &record->cmd);
         }
     }
     r->path_mm = least < MATHS_INFINITY ? maths_max(r->path_mm, least) : r->path_mm;
@@ -260,7 +260,7 @@ static void judge_smooth(struct run *r, const struct cycle_record *record)
     r->block = record->block;
 }
 
-static void judge_landing(struct run *r, const struct cycle_record *record)
+static void verifier_landing(struct run *r, const struct cycle_record *record)
 {
     const double off_mm = chain_distance(&record->cmd, &motion_block(&motion)->curve.end);
 
@@ -268,34 +268,34 @@ static void judge_landing(struct run *r, const struct cycle_record *record)
         return;
     }
     r->landing_mm = maths_max(r->landing_mm, off_mm);
-    if (motion_rests(&motion) && !r->move[record->block - 1].rested) {
+    if (takt_motion_rests(&motion) && !r->move[record->block - 1].rested) {
         r->move[record->block - 1].rested = true;
         r->rests++;
     }
 }
 
 /* The axes have just come to rest where no block ends, and nothing has been held or switched for long. */
-static void judge_rest(struct run *r, const struct cycle_record *record)
+static void verifier_rest(struct run *r, const struct cycle_record *record)
 {
-    const bool rests = motion.lead.feed == 0.0 && motion.lag == 0.0;
+    const bool rests = motion.reference.feed == 0.0 && motion.lag == 0.0;
 
     r->unplanned += rests && !r->rested && !record->landed && r->look_ahead >= LOOK_AHEAD_ENOUGH &&
                     r->hands.schedule.free > OVER_CYCLES;
     r->rested = rests;
 }
 
-static void judge(struct run *r, const struct cycle_record *record)
+static void verifier(struct run *r, const struct cycle_record *record)
 {
-    chain_judge_setpoint(&r->judge, &r->limits, &record->cmd);
+    chain_verifier_setpoint(&r->verifier, &r->limits, &record->cmd);
     if (record->block > 0 && r->move[record->block - 1].has_length && !r->hands.reset) {
         if (r->tolerance_mm > 0.0) {
-            judge_smooth(r, record);
+            verifier_smooth(r, record);
         } else {
-            judge_exact(r, record);
+            verifier_exact(r, record);
         }
-        judge_landing(r, record);
+        verifier_landing(r, record);
     }
-    judge_rest(r, record);
+    verifier_rest(r, record);
     if (r->tolerance_mm > 0.0) {
         second_add_setpoint(&record->cmd);
     }
@@ -308,14 +308,14 @@ static bool run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, r->proportional);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, r->proportional);
     do {
         hands_follow(&r->hands, &motion);
         plan(r);
-        result = motion_cycle(&motion, &r->hands.schedule.now, &record);
+        result = takt_motion_cycle(&motion, &r->hands.schedule.now, &record);
         if (result == MOTION_CYCLE) {
-            judge(r, &record);
+            verifier(r, &record);
             hands_hold_at_end(&r->hands, &motion, &record);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
@@ -334,8 +334,8 @@ static bool holds(const struct run *r, bool completed)
 {
     const double within_mm = maths_max(r->tolerance_mm, PLACE_MM);
 
-    return completed && r->judge.velocity <= 1.0001 && r->judge.acceleration <= 1.0001 &&
-           r->judge.jerk <= 1.001 && r->path_mm <= within_mm && r->corner_mm <= within_mm &&
+    return completed && r->verifier.velocity <= 1.0001 && r->verifier.acceleration <= 1.0001 &&
+           r->verifier.jerk <= 1.001 && r->path_mm <= within_mm && r->corner_mm <= within_mm &&
            r->landing_mm <= PLACE_MM && r->backward == 0 && r->unplanned == 0 && r->order <= 1.0;
 }
 
@@ -353,10 +353,10 @@ static bool run_seed(unsigned seed, bool smoothed, enum single_use use)
     printf("seed %u %s, single block %s: law %d, %u moves, look-ahead %u, cycle %g s: %s in %llu "
            "cycles, v %.6f, a %.6f, j %.6f of the limits, off the path by %.3g, corners %.3g, ends "
            "%.3g mm, in order within %.4g P, %u backward, %u unplanned stops\n",
-           seed, smoothed ? "smoothed" : "exact", use_names[use], (int)r->limits.law, r->moves,
+           seed, smoothed ? "smoothed" : "exact", use_names[use], (int)r->limits.profile, r->moves,
            (unsigned)r->look_ahead, r->limits.cycle_s, completed ? "completed" : "not completed",
-           (unsigned long long)motion.cycles, r->judge.velocity, r->judge.acceleration,
-           r->judge.jerk, r->path_mm, r->corner_mm, r->landing_mm, r->order, r->backward,
+           (unsigned long long)motion.cycles, r->verifier.velocity, r->verifier.acceleration,
+           r->verifier.jerk, r->path_mm, r->corner_mm, r->landing_mm, r->order, r->backward,
            r->unplanned);
     return false;
 }
@@ -418,18 +418,18 @@ static void test_left_on_smoothed_motions_end(void)
 /* Found by longer runs of this test. */
 static void test_rare_programs_keep_the_limits(void)
 {
-    /* a joint of less acceleration came into view in the last cycle before an end to halt at */
+    /* a junction of less acceleration came into view in the last cycle before an end to halt at */
     first_seed = 50064;
     programs = 5;
     test_left_on_every_motion_ends_at_rest();
-    /* switched off before a joint of less acceleration, too late to land on it or to rest there */
+    /* switched off before a junction of less acceleration, too late to land on it or to rest there */
     TEST_ASSERT_TRUE(check_program(372, false, SINGLE_SWITCHED));
     TEST_ASSERT_TRUE(check_program(2044, false, SINGLE_SWITCHED));
     /* in the last cycle before rest a hold found that the axes had turned back */
     TEST_ASSERT_TRUE(check_program(5113, true, SINGLE_SWITCHED));
     /* from a stop inside a chain the curve began the motion before */
     TEST_ASSERT_TRUE(check_program(285, true, SINGLE_OFF));
-    /* a motion of blocks of less and less acceleration, and a joint behind, was passed */
+    /* a motion of blocks of less and less acceleration, and a junction behind, was passed */
     first_seed = 204;
     programs = 5;
     test_left_on_every_motion_ends_at_rest();

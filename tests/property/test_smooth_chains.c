@@ -4,7 +4,8 @@
  * path, pass every programmed corner within it, and end in the programmed end. So they do with rotary axes, up to six in
  * all, and beside motions on the exact path whose every end is landed on.
  *
- * test_smooth_chains NUMBER runs so many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed on.
+ * test_smooth_chains NUMBER runs this many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed
+ * on.
  */
 #include "chain_distance.h"
 #include "motion/motion.h"
@@ -53,10 +54,10 @@ struct run {
     struct schedule schedule;
     bool exact;             /* the newest move is not smoothed */
     unsigned rotary;        /* bit i set: axis i turns */
-    uint64_t single_cycles; /* single block is switched every so many; 0: never */
+    uint64_t single_cycles; /* between switches of single block; 0: there are none */
     bool rests;
     unsigned singles; /* times the axes have come to rest under single block alone */
-    struct chain_judge judge;
+    struct chain_verifier verifier;
     struct point last;
     double path_mm;
     uint64_t path_cycle;
@@ -112,7 +113,7 @@ static void turn(struct run *r, const struct point *from, struct move *m)
     r->chain.at = m->end;
 }
 
-/* The next move, kept to judge by. */
+/* The next move, kept to verify by. */
 static struct move next_move(struct run *r)
 {
     struct programmed *kept = &r->move[r->pushed];
@@ -128,7 +129,7 @@ static struct move next_move(struct run *r)
     m.path = r->exact ? PATH_EXACT : PATH_BLEND;
     m.tolerance_mm = r->tolerance_mm;
     m.merge_mm = r->merge_mm;
-    kept->has_length = move_curve(&m, &r->end, &kept->curve);
+    kept->has_length = takt_move_curve(&m, &r->end, &kept->curve);
     kept->corner_mm = MATHS_INFINITY;
     r->end = m.end;
     r->pushed++;
@@ -141,25 +142,25 @@ static void push_next(struct run *r)
 
     if (r->pushed < r->moves) {
         m = next_move(r);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && path_has_room(&path)) {
+    takt_path_go_on(&path);
+    while (!path.finished && takt_path_has_room(&path)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 /* No place on a curve is farther from its start: its length, and what the rotary axes turn by. */
@@ -174,14 +175,14 @@ static double reach_of(const struct curve *c)
 }
 
 /* Lowers *least to the distance of p from the curve. */
-static void judge_curve(const struct curve *c, const struct point *p, double *least)
+static void verifier_curve(const struct curve *c, const struct point *p, double *least)
 {
     if (chain_distance(p, &c->start) - reach_of(c) < *least) {
         *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
 
-static void judge_corner(struct programmed *m, const struct point *from, const struct point *to)
+static void verifier_corner(struct programmed *m, const struct point *from, const struct point *to)
 {
     if (chain_distance(to, &m->curve.end) - chain_distance(from, to) < m->corner_mm) {
         m->corner_mm = maths_min(m->corner_mm, chain_corner_distance(&m->curve.end, from, to));
@@ -189,7 +190,7 @@ static void judge_corner(struct programmed *m, const struct point *from, const s
 }
 
 /* Its own motion first: what is farther away is not looked at. */
-static void judge_place(struct run *r, const struct cycle_record *record)
+static void verifier_place(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->pushed ? record->block + AROUND : r->pushed;
@@ -197,16 +198,16 @@ static void judge_place(struct run *r, const struct cycle_record *record)
     double least = MATHS_INFINITY;
 
     if (own < last && r->move[own].has_length) {
-        judge_curve(&r->move[own].curve, &record->cmd, &least);
+        verifier_curve(&r->move[own].curve, &record->cmd, &least);
     }
     for (unsigned i = first; i < last; i++) {
         struct programmed *m = &r->move[i];
 
         if (m->has_length && i != own) {
-            judge_curve(&m->curve, &record->cmd, &least);
+            verifier_curve(&m->curve, &record->cmd, &least);
         }
         if (m->has_length) {
-            judge_corner(m, &r->last, &record->cmd);
+            verifier_corner(m, &r->last, &record->cmd);
         }
     }
     if (least < MATHS_INFINITY && least > r->path_mm) {
@@ -216,7 +217,7 @@ static void judge_place(struct run *r, const struct cycle_record *record)
     r->last = record->cmd;
 }
 
-static void judge_landing(struct run *r, const struct cycle_record *record)
+static void verifier_landing(struct run *r, const struct cycle_record *record)
 {
     if (record->landed && record->block > 0) {
         struct programmed *m = &r->move[record->block - 1];
@@ -228,7 +229,7 @@ static void judge_landing(struct run *r, const struct cycle_record *record)
 static void count_rests(struct run *r)
 {
     const bool rests =
-        motion_rests(&motion) && r->schedule.now.single_block && r->schedule.free > 0;
+        takt_motion_rests(&motion) && r->schedule.now.single_block && r->schedule.free > 0;
 
     r->singles += rests && !r->rests ? 1 : 0;
     r->rests = rests;
@@ -253,18 +254,18 @@ static enum motion_result run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     do {
         plan(r);
         schedule_follow(&r->schedule, &r->chain, motion.cycles);
         r->schedule.now.single_block =
             r->single_cycles > 0 && motion.cycles / r->single_cycles % 2 == 1;
-        result = motion_cycle(&motion, &r->schedule.now, &record);
+        result = takt_motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
-            chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
-            judge_place(r, &record);
-            judge_landing(r, &record);
+            chain_verifier_setpoint(&r->verifier, &r->limits, &record.cmd);
+            verifier_place(r, &record);
+            verifier_landing(r, &record);
             count_rests(r);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
@@ -284,14 +285,14 @@ static void check_run(const struct run *r, enum motion_result result, unsigned s
         message, sizeof(message),
         "seed %u family %d law %d moves %u cycle %g s P %g: %llu cycles, v %.5f a %.5f j %.5f, "
         "path %.4f P at %llu, corner %.4f P",
-        seed, (int)r->family, (int)r->limits.law, r->moves, r->limits.cycle_s, r->tolerance_mm,
-        (unsigned long long)motion.cycles, r->judge.velocity, r->judge.acceleration, r->judge.jerk,
-        r->path_mm / r->tolerance_mm, (unsigned long long)r->path_cycle,
+        seed, (int)r->family, (int)r->limits.profile, r->moves, r->limits.cycle_s, r->tolerance_mm,
+        (unsigned long long)motion.cycles, r->verifier.velocity, r->verifier.acceleration,
+        r->verifier.jerk, r->path_mm / r->tolerance_mm, (unsigned long long)r->path_cycle,
         r->corner_mm / r->tolerance_mm);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MOTION_DONE, result, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.velocity <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.acceleration <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.jerk <= 1.001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.velocity <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.acceleration <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.jerk <= 1.001, message);
     TEST_ASSERT_TRUE_MESSAGE(r->path_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(r->corner_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(chain_distance(&r->last, &r->end) == 0.0, message);

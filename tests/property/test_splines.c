@@ -2,7 +2,7 @@
  * Planner and motion on splines: whatever the order, the control points and weights, the size and the feed, setpoints keep
  * the axes' limits by differences, the end is hit, and where no limit binds the feed is even.
  *
- * test_splines NUMBER runs so many seeds on each machine instead of SEEDS.
+ * test_splines NUMBER runs this many seeds on each machine instead of SEEDS.
  */
 #include "geometry/nurbs.h"
 #include "motion/motion.h"
@@ -21,7 +21,7 @@
 static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 
 /* What a run is about. */
 struct task {
@@ -81,18 +81,18 @@ static void add_knot(const struct task *t)
     const unsigned last = t->points - 1;
 
     if (i < t->points) {
-        nurbs_add_point(&ahead.nurbs, t->point[i], t->weight[i]);
+        takt_nurbs_add_point(&ahead.nurbs, t->point[i], t->weight[i]);
     }
-    nurbs_add_knot(&ahead.nurbs, i < t->order ? 0.0
-                                 : i <= last  ? i - t->order + 1.0
-                                              : last - t->order + 2.0);
+    takt_nurbs_add_knot(&ahead.nurbs, i < t->order ? 0.0
+                                      : i <= last  ? i - t->order + 1.0
+                                                   : last - t->order + 2.0);
 }
 
 static bool next_piece(const struct task *t, struct nurbs_piece *piece)
 {
     enum nurbs_result result;
 
-    while ((result = nurbs_next(&ahead.nurbs, piece)) == NURBS_NONE &&
+    while ((result = takt_nurbs_next(&ahead.nurbs, piece)) == NURBS_NONE &&
            ahead.knots < t->points + t->order) {
         add_knot(t);
     }
@@ -112,11 +112,11 @@ static void push_next(const struct task *t)
     enum axis axis[2];
 
     if (!next_piece(t, &piece)) {
-        path_push(&path, &(struct move){.kind = MOVE_END});
-        path_finish(&path);
+        takt_path_push(&path, &(struct move){.kind = MOVE_END});
+        takt_path_finish(&path);
         return;
     }
-    plane_axes(t->plane, &axis[0], &axis[1]);
+    takt_plane_axes(t->plane, &axis[0], &axis[1]);
     for (unsigned i = 0; i < 2; i++) {
         ahead.at.at[axis[i]] = piece.end_mm[i];
         m.heading_rad[i] = piece.course.heading_rad[i];
@@ -124,7 +124,7 @@ static void push_next(const struct task *t)
     }
     m.spline_mm = piece.course.length_mm;
     m.end = ahead.at;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 static void begin(const struct task *t)
@@ -133,16 +133,16 @@ static void begin(const struct task *t)
 
     memset(&seen, 0, sizeof(seen));
     memset(&ahead, 0, sizeof(ahead));
-    nurbs_open(&ahead.nurbs, t->order);
-    plane_axes(t->plane, &axis[0], &axis[1]);
+    takt_nurbs_open(&ahead.nurbs, t->order);
+    takt_plane_axes(t->plane, &axis[0], &axis[1]);
     for (unsigned i = 0; i < 2; i++) {
         ahead.at.at[axis[i]] = t->point[0][i];
         for (unsigned k = 0; k < 4; k++) {
             seen.history[axis[i]][k] = t->point[0][i];
         }
     }
-    path_init(&path, &t->limits, &ahead.at);
-    motion_init(&motion, &path, &ahead.at, false);
+    takt_path_init(&path, &t->limits, &ahead.at);
+    takt_motion_init(&motion, &path, &ahead.at, false);
 }
 
 /* Runs it with a feed override that changes all the time, or with none. */
@@ -155,19 +155,20 @@ static void run(const struct task *t, uint32_t look_ahead, bool overrides)
 
     begin(t);
     do {
-        if (motion_wanted(&motion) != NULL) {
-            path_go_on(&path);
-            while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < look_ahead) {
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_path_go_on(&path);
+            while (!path.finished && takt_path_has_room(&path) &&
+                   takt_motion_ahead(&motion) < look_ahead) {
                 push_next(t);
             }
-            motion_build(&motion);
+            takt_motion_build(&motion);
         }
         if (overrides && ++cycle % 40 == 0) {
             person.feed_ratio = cycle % 80 == 0 ? 1.2 : 0.3;
         }
-        result = motion_cycle(&motion, &person, &record);
+        result = takt_motion_cycle(&motion, &person, &record);
         if (result == MOTION_CYCLE) {
-            chain_judge_setpoint(&seen, &t->limits, &record.cmd);
+            chain_verifier_setpoint(&seen, &t->limits, &record.cmd);
         }
     } while (result == MOTION_CYCLE);
     TEST_ASSERT_EQUAL(MOTION_DONE, result);
@@ -215,7 +216,7 @@ static void test_smoothed_splines_keep_the_limits(void)
     check_limits(256, false, 0.02);
 }
 
-/* A curve so gentle that no limit binds: in between the ramps, every step is feed times cycle, over every joint. */
+/* A curve so gentle that no limit binds: in between the ramps, every step is feed times cycle, over every junction. */
 static void test_the_feed_is_even_from_piece_to_piece(void)
 {
     struct task t = {.limits = {.axes = 7, .cycle_s = CYCLE_S, .chord_error_max_mm = 1.0},
@@ -237,14 +238,15 @@ static void test_the_feed_is_even_from_piece_to_piece(void)
     begin(&t);
     last = ahead.at;
     do {
-        if (motion_wanted(&motion) != NULL) {
-            path_go_on(&path);
-            while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < 256) {
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_path_go_on(&path);
+            while (!path.finished && takt_path_has_room(&path) &&
+                   takt_motion_ahead(&motion) < 256) {
                 push_next(&t);
             }
-            motion_build(&motion);
+            takt_motion_build(&motion);
         }
-        if (motion_cycle(&motion, &as_programmed, &record) != MOTION_CYCLE) {
+        if (takt_motion_cycle(&motion, &as_programmed, &record) != MOTION_CYCLE) {
             break;
         }
         const double x = record.cmd.at[AXIS_X] - last.at[AXIS_X];

@@ -3,7 +3,7 @@
  * (an arc not by more than a step radially), the end is exact, and the improved form takes no more ticks than the
  * leading axis has steps. Every shape is a fixed seed; a failure names it.
  *
- * test_step_forms NUMBER tries so many of each shape instead of SHAPES.
+ * test_step_forms NUMBER tries this many of each shape instead of SHAPES.
  */
 #include "base/maths.h"
 #include "property_arguments.h"
@@ -52,9 +52,9 @@ static unsigned random_below(unsigned count)
 
 static int64_t random_steps(double decades)
 {
-    double size = maths_power(10.0, random_between(-0.5, decades));
+    double size = takt_maths_power(10.0, random_between(-0.5, decades));
 
-    return (int64_t)maths_floor(random_between(0, 1) < 0.5 ? size : -size);
+    return (int64_t)takt_maths_floor(random_between(0, 1) < 0.5 ? size : -size);
 }
 
 static void raise_to(double *largest, double value)
@@ -112,8 +112,8 @@ static void run_line(enum evaluate_form form, const int64_t delta[AXIS_COUNT])
     struct evaluate_line line;
     struct evaluate_tick tick;
 
-    evaluate_line_begin(&line, form, delta);
-    while (evaluate_line_next(&line, &tick)) {
+    takt_evaluate_line_begin(&line, form, delta);
+    while (takt_evaluate_line_next(&line, &tick)) {
         ticks++;
         take(at, &tick);
         TEST_ASSERT_TRUE_MESSAGE(form == EVALUATE_IMPROVED || is_one_axis(&tick), shape);
@@ -154,19 +154,19 @@ struct arc_case {
 static struct arc_case random_arc(unsigned n, double decades)
 {
     struct arc_case c;
-    double size = maths_power(10.0, random_between(0.0, decades));
+    double size = takt_maths_power(10.0, random_between(0.0, decades));
     double direction = random_between(-MATHS_PI, MATHS_PI);
     double sine, cosine;
 
     memset(&c, 0, sizeof c);
-    maths_sincos(direction, &sine, &cosine);
-    c.config.start[0] = (int64_t)maths_round(size * cosine);
-    c.config.start[1] = (int64_t)maths_round(size * sine);
+    takt_maths_sincos(direction, &sine, &cosine);
+    c.config.start[0] = (int64_t)takt_maths_round(size * cosine);
+    c.config.start[1] = (int64_t)takt_maths_round(size * sine);
     if (c.config.start[0] == 0 && c.config.start[1] == 0)
         c.config.start[0] = 1;
     c.radius = maths_sqrt(
         (double)(c.config.start[0] * c.config.start[0] + c.config.start[1] * c.config.start[1]));
-    c.start_rad = maths_atan2((double)c.config.start[1], (double)c.config.start[0]);
+    c.start_rad = takt_maths_atan2((double)c.config.start[1], (double)c.config.start[0]);
     c.config.clockwise = random_between(0, 1) < 0.5;
     c.config.form = n % 2 == 0 ? EVALUATE_IMPROVED : EVALUATE_PLAIN;
     c.config.turns = random_between(0, 1) < 0.1 ? 1 + random_below(2) : 0;
@@ -180,14 +180,14 @@ static void set_end(struct arc_case *c)
     double signed_sweep = c->config.clockwise ? -sweep : sweep;
     double sine, cosine;
 
-    maths_sincos(c->start_rad + signed_sweep, &sine, &cosine);
-    c->config.end[0] = (int64_t)maths_round(c->radius * cosine);
-    c->config.end[1] = (int64_t)maths_round(c->radius * sine);
+    takt_maths_sincos(c->start_rad + signed_sweep, &sine, &cosine);
+    c->config.end[0] = (int64_t)takt_maths_round(c->radius * cosine);
+    c->config.end[1] = (int64_t)takt_maths_round(c->radius * sine);
     if (c->config.end[0] == 0 && c->config.end[1] == 0)
         memcpy(c->config.end, c->config.start, sizeof c->config.end);
-    sweep = maths_atan2((double)c->config.end[1], (double)c->config.end[0]) - c->start_rad;
+    sweep = takt_maths_atan2((double)c->config.end[1], (double)c->config.end[0]) - c->start_rad;
     sweep = c->config.clockwise ? -sweep : sweep;
-    sweep -= MATHS_TWO_PI * maths_floor(sweep / MATHS_TWO_PI);
+    sweep -= MATHS_TWO_PI * takt_maths_floor(sweep / MATHS_TWO_PI);
     if (memcmp(c->config.start, c->config.end, sizeof c->config.start) == 0)
         sweep = 0.0;
     sweep += MATHS_TWO_PI * (double)c->config.turns;
@@ -213,20 +213,20 @@ static void check_on_circle(const int64_t at[2], double radius)
 /* Steps of the coordinate that leads, from the beginning of the first octant to an angle: R sin in odd, R (1 - cos) ... */
 static double leading_way(double angle_rad)
 {
-    double eighths = maths_floor(angle_rad / (0.25 * MATHS_PI));
+    double eighths = takt_maths_floor(angle_rad / (0.25 * MATHS_PI));
     double rest = angle_rad - eighths * 0.25 * MATHS_PI;
-    bool odd = maths_floor(0.5 * eighths) * 2.0 != eighths;
+    bool odd = takt_maths_floor(0.5 * eighths) * 2.0 != eighths;
 
     return eighths * maths_sqrt(0.5) +
-           (odd ? maths_sqrt(0.5) - maths_sin(0.25 * MATHS_PI - rest) : maths_sin(rest));
+           (odd ? maths_sqrt(0.5) - takt_maths_sin(0.25 * MATHS_PI - rest) : takt_maths_sin(rest));
 }
 
-/* Ticks beyond what the leading coordinate of the true arc moves; a rounded joint between octants may cost one. */
+/* Ticks beyond what the leading coordinate of the true arc moves; a rounded junction between octants may cost one. */
 static void check_ticks(const struct arc_case *c, int64_t ticks)
 {
     double start = c->start_rad * (c->config.clockwise ? -1.0 : 1.0) + MATHS_TWO_PI;
     double way = c->radius * (leading_way(start + maths_abs(c->sweep_rad)) - leading_way(start));
-    double octants = maths_floor(maths_abs(c->sweep_rad) / (0.25 * MATHS_PI)) + 1.0;
+    double octants = takt_maths_floor(maths_abs(c->sweep_rad) / (0.25 * MATHS_PI)) + 1.0;
 
     raise_to(&worst.ticks_over, ((double)ticks - way) / (octants + 1.0));
     TEST_ASSERT_TRUE_MESSAGE((double)ticks <= way + octants + 1.0, shape);
@@ -239,8 +239,8 @@ static void run_arc(const struct arc_case *c)
     struct evaluate_tick tick;
     int64_t ticks = 0;
 
-    evaluate_arc_begin(&arc, &c->config);
-    while (evaluate_arc_next(&arc, &tick)) {
+    takt_evaluate_arc_begin(&arc, &c->config);
+    while (takt_evaluate_arc_next(&arc, &tick)) {
         ticks++;
         take(at, &tick);
         TEST_ASSERT_TRUE_MESSAGE(c->config.form == EVALUATE_IMPROVED || is_one_axis(&tick), shape);
@@ -272,10 +272,10 @@ static void test_no_arc_leaves_its_circle_by_a_step_and_its_end_is_exact(void)
 static double turned(const struct arc_case *c, const int64_t at[AXIS_COUNT],
                      const unsigned plane[2], double expected)
 {
-    double angle = maths_atan2((double)at[plane[1]], (double)at[plane[0]]) - c->start_rad;
+    double angle = takt_maths_atan2((double)at[plane[1]], (double)at[plane[0]]) - c->start_rad;
 
     angle *= c->config.clockwise ? -1.0 : 1.0;
-    return angle + MATHS_TWO_PI * maths_round((expected - angle) / MATHS_TWO_PI);
+    return angle + MATHS_TWO_PI * takt_maths_round((expected - angle) / MATHS_TWO_PI);
 }
 
 /* Largest deviation of all coordinates from the helix at the place given; the arc's along it, and straight axes. */
@@ -337,8 +337,8 @@ static void run_helix(const struct arc_case *c, const unsigned plane[2],
 
     at[plane[0]] = c->config.start[0];
     at[plane[1]] = c->config.start[1];
-    evaluate_helix_begin(&h, &c->config, plane, delta);
-    while (evaluate_helix_next(&h, &tick)) {
+    takt_evaluate_helix_begin(&h, &c->config, plane, delta);
+    while (takt_evaluate_helix_next(&h, &tick)) {
         take(at, &tick);
         TEST_ASSERT_TRUE_MESSAGE(c->config.form == EVALUATE_IMPROVED || is_one_axis(&tick), shape);
         TEST_ASSERT_TRUE_MESSAGE(c->config.form == EVALUATE_IMPROVED || is_one_axis(&tick), shape);

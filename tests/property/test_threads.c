@@ -7,7 +7,7 @@
  *
  * once they have caught up; all passes, whatever their speeds, begin at a whole revolution; a tap comes back to its start exactly.
  *
- * test_threads NUMBER runs so many machines, test_threads NUMBER FIRST from that seed on.
+ * test_threads NUMBER runs this many machines, test_threads NUMBER FIRST from that seed on.
  */
 #include "property_arguments.h"
 #include "support/thread_bench.h"
@@ -31,10 +31,10 @@
 
 #define PASSES 3
 
-/* What was is forgotten in so many parts of the bandwidth. */
+/* What was is forgotten in this many parts of the bandwidth. */
 #define FORGETS 6.0
 
-/* The lead-in is forgotten in so many. */
+/* The lead-in is forgotten in this many. */
 #define SETTLES 8.0
 
 static struct bench bench;
@@ -73,7 +73,7 @@ static double between(double low, double high)
 
 static double decades(double from, double to)
 {
-    return maths_power(10.0, between(from, to));
+    return takt_maths_power(10.0, between(from, to));
 }
 
 static void random_machine(void)
@@ -84,7 +84,7 @@ static void random_machine(void)
 
     bench_set_default(&bench);
     bench.limits.cycle_s = cycles_s[(unsigned)between(0, 4)];
-    bench.limits.law = (enum law)between(0, 3);
+    bench.limits.profile = (enum ramp_profile)between(0, 3);
     for (int i = 0; i < BENCH_AXES; i++) {
         bench.limits.velocity_mm_s[i] = decades(1.3, 2.5);
         bench.limits.acceleration_mm_s2[i] = decades(2.5, 4.0);
@@ -96,7 +96,7 @@ static void random_machine(void)
     s->inertia_kg_m2 = decades(-4.0, -2.0);
     s->rated_torque_nm = s->inertia_kg_m2 * s->ramp_rpm_s * decades(-0.9, 0.5);
     s->ripple_percent = between(0, 1) < 0.5 ? between(0, 20) : 0.0;
-    s->ripple_per_revolution = maths_floor(between(1, 12));
+    s->ripple_per_revolution = takt_maths_floor(between(1, 12));
     s->overload_percent = 1000.0;
 }
 
@@ -124,15 +124,16 @@ static void random_program(bool taps)
 
 static double bandwidth(void)
 {
-    return -maths_ln(1.0 - maths_cbrt(bench.lock.angle.gain_acceleration)) / bench.limits.cycle_s;
+    return -takt_maths_ln(1.0 - takt_maths_cbrt(bench.sync.angle.gain_acceleration)) /
+           bench.limits.cycle_s;
 }
 
 /* Along a thread nobody goes back, from its very start on, if the spindle turns evenly. */
 static void look_back(void)
 {
-    const double x_mm = bench.lock.follower.at.x_mm;
+    const double x_mm = bench.sync.follower.at.x_mm;
 
-    if (!bench.is_locked || bench.lock.taps || bench.lock.phase != LOCK_FOLLOWS) {
+    if (!bench.is_locked || bench.sync.taps || bench.sync.phase != SPINDLE_SYNC_FOLLOWS) {
         seen.farthest_mm = 0.0;
         return;
     }
@@ -149,16 +150,16 @@ static void look(void)
     const double a = (seen.rev[0] - 2.0 * seen.rev[1] + seen.rev[2]) / (t * t);
 
     seen.recent = maths_max(maths_abs(a), seen.recent * (1.0 - t * bandwidth() / FORGETS));
-    if (bench.is_locked && bench.lock.phase == LOCK_FOLLOWS) {
+    if (bench.is_locked && bench.sync.phase == SPINDLE_SYNC_FOLLOWS) {
         seen.acceleration = maths_max(seen.acceleration, seen.recent);
     }
     look_back();
     seen.time_s = bench_is_on_thread(&bench) ? seen.time_s + t : 0.0;
     if (seen.time_s * bandwidth() > SETTLES) {
-        const double zero = bench.lock.at.zero_rev;
+        const double zero = bench.sync.at.zero_rev;
 
         seen.off_mm = maths_max(seen.off_mm, maths_abs(bench_off_mm(&bench)));
-        seen.is_at_index = seen.is_at_index && zero == maths_round(zero);
+        seen.is_at_index = seen.is_at_index && zero == takt_maths_round(zero);
     }
 }
 
@@ -174,14 +175,14 @@ static void run(void)
 static void check_phase(const char *what)
 {
     const double w = bandwidth();
-    const double pitch_mm = bench.lock.at.pitch_mm;
+    const double pitch_mm = bench.sync.at.pitch_mm;
     const double noise = COUNTS + bench.spindle_config.encoder_noise_counts;
     const double bound_mm =
-        pitch_mm * (BOUND * seen.acceleration / (w * w) + noise / bench.lock_config.counts);
+        pitch_mm * (BOUND * seen.acceleration / (w * w) + noise / bench.spindle_sync_config.counts);
 
-    if (pitch_mm * seen.acceleration * w > JERK_PART * bench.lock.chain.limits.jerk_mm_s3 ||
+    if (pitch_mm * seen.acceleration * w > JERK_PART * bench.sync.chain.limits.jerk_mm_s3 ||
         pitch_mm * seen.acceleration >
-            ACCELERATION_PART * bench.lock.chain.limits.acceleration_mm_s2) {
+            ACCELERATION_PART * bench.sync.chain.limits.acceleration_mm_s2) {
         return;
     }
     bounded++;
@@ -200,13 +201,13 @@ static void check_machine(unsigned seed, bool taps)
     (void)snprintf(
         what, sizeof(what),
         "seed %u %s: v %.6f, a %.6f, j %.6f of the limits, off by %.6f mm, back by %.6f, alarm %d",
-        seed, taps ? "tap" : "thread", bench.judge.velocity, bench.judge.acceleration,
-        bench.judge.jerk, seen.off_mm, seen.back_mm, (int)bench.lock.alarm.code);
-    TEST_ASSERT_TRUE_MESSAGE(bench.judge.velocity <= 1.0001, what);
-    TEST_ASSERT_TRUE_MESSAGE(bench.judge.acceleration <= 1.0001, what);
-    TEST_ASSERT_TRUE_MESSAGE(bench.judge.jerk <= 1.001, what);
-    if (bench.lock.alarm.code != TAKT_OK) {
-        TEST_ASSERT_EQUAL_MESSAGE(LOCK_FAILED, bench.locked, what);
+        seed, taps ? "tap" : "thread", bench.verifier.velocity, bench.verifier.acceleration,
+        bench.verifier.jerk, seen.off_mm, seen.back_mm, (int)bench.sync.alarm.code);
+    TEST_ASSERT_TRUE_MESSAGE(bench.verifier.velocity <= 1.0001, what);
+    TEST_ASSERT_TRUE_MESSAGE(bench.verifier.acceleration <= 1.0001, what);
+    TEST_ASSERT_TRUE_MESSAGE(bench.verifier.jerk <= 1.001, what);
+    if (bench.sync.alarm.code != TAKT_OK) {
+        TEST_ASSERT_EQUAL_MESSAGE(SPINDLE_SYNC_FAILED, bench.locked, what);
         alarms++;
         return;
     }
@@ -217,8 +218,9 @@ static void check_machine(unsigned seed, bool taps)
     if (bench.spindle_config.ripple_percent == 0.0) {
         const double counts = 1.0 + bench.spindle_config.encoder_noise_counts;
 
-        TEST_ASSERT_TRUE_MESSAGE(
-            seen.back_mm <= counts * bench.lock.at.pitch_mm / bench.lock_config.counts, what);
+        TEST_ASSERT_TRUE_MESSAGE(seen.back_mm <= counts * bench.sync.at.pitch_mm /
+                                                     bench.spindle_sync_config.counts,
+                                 what);
     }
     completed++;
 }

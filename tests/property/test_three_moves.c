@@ -2,9 +2,9 @@
  * The planner's times against the least ones there are: single moves against the closed form, chains of three moves
  * against a slow search (support/optimum.h).
  *
- * test_three_moves NUMBER [FIRST [SHORTEST]] tries so many chains from a seed on, of moves from SHORTEST mm to 100 mm, tells
- * each that takes too long, and how near the planner comes. The planner is known not to keep this for moves shorter than
- * SHORTEST_MM: test_three_moves 400 1000 0.01.
+ * test_three_moves NUMBER [FIRST [SHORTEST]] tries this many chains from a seed on, of moves from SHORTEST mm to 100
+ * mm, tells each that takes too long, and how near the planner comes. The planner is known not to keep this for moves
+ * shorter than SHORTEST_MM: test_three_moves 400 1000 0.01.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -22,7 +22,7 @@
 #define CHAINS  6
 #define SINGLES 2000
 
-/* Of the moves of chains in each run of all tests. */
+/* Lengths of the moves of chains in each run of all tests. */
 #define SHORTEST_MM 10.0
 #define LONGEST_MM  100.0
 
@@ -66,12 +66,12 @@ static void push_all(const struct move *move, unsigned count)
     struct move end;
 
     for (unsigned i = 0; i < count; i++) {
-        path_push(&path, &move[i]);
+        takt_path_push(&path, &move[i]);
     }
     memset(&end, 0, sizeof(end));
     end.kind = MOVE_END;
-    path_push(&path, &end);
-    path_finish(&path);
+    takt_path_push(&path, &end);
+    takt_path_finish(&path);
 }
 
 static struct result run_moves(const struct plan_limits *limits, const struct move *move,
@@ -83,14 +83,14 @@ static struct result run_moves(const struct plan_limits *limits, const struct mo
     struct result r = {0.0, 0};
     enum motion_result cycle;
 
-    path_init(&path, limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     push_all(move, count);
     do {
-        if (motion_wanted(&motion) != NULL) {
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_motion_build(&motion);
         }
-        cycle = motion_cycle(&motion, &as_programmed, &record);
+        cycle = takt_motion_cycle(&motion, &as_programmed, &record);
         r.landed += cycle == MOTION_CYCLE && record.landed ? 1 : 0;
     } while (cycle == MOTION_CYCLE && motion.cycles < CYCLES_MAX);
     TEST_ASSERT_EQUAL(MOTION_DONE, cycle);
@@ -106,7 +106,7 @@ static void random_machine(struct chain *c, struct plan_limits *l)
     l->axes = 7;
     l->cycle_s = chain_between(c, 0, 1) < 0.5 ? 1e-3 : 2.5e-4;
     l->chord_error_max_mm = 1e-3;
-    l->law = LAW_JERK;
+    l->profile = RAMP_PROFILE_JERK;
     l->landing = LANDING_SPAN;
     for (int i = 0; i < CHAIN_AXES; i++) {
         l->velocity_mm_s[i] = chain_between(c, 50, 200);
@@ -196,7 +196,7 @@ static void random_chain(struct chain *c, const struct plan_limits *limits,
     for (int i = 0; i < OPTIMUM_MOVES; i++) {
         if (i > 0 && chain_between(c, 0, 1) < 0.2) {
             random_direction(c, direction);
-            along[i - 1].joint_feed = 0.0;
+            along[i - 1].junction_feed = 0.0;
         }
         random_line(c, limits, direction, shortest_mm, &move[i], &along[i]);
     }
@@ -212,7 +212,7 @@ static void note(unsigned seed, const struct optimum_move along[OPTIMUM_MOVES], 
         printf("seed %u: %.4f of the least time:", seed, ratio);
         for (int i = 0; i < OPTIMUM_MOVES; i++) {
             printf(" %.4f mm at %.1f mm/s%s", along[i].length, along[i].feed,
-                   along[i].joint_feed > 0.0 ? "," : ", stop,");
+                   along[i].junction_feed > 0.0 ? "," : ", stop,");
         }
         printf(" %.0f mm/s2, %.0f mm/s3\n", along[0].acceleration, along[0].jerk);
     }

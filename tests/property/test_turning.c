@@ -2,7 +2,7 @@
  * The turning cycles on random profiles of lines and arcs: wherever a cycle goes, at feed or at rapid, it stays at least its
  * distance above the profile, and finishing keeps exactly that distance. Roughing cuts no deeper than a level at once.
  *
- * test_turning NUMBER FIRST: so many profiles, the first of this seed.
+ * test_turning NUMBER FIRST: this many profiles, the first of this seed.
  */
 #include "base/maths.h"
 #include "program/turning.h"
@@ -20,7 +20,10 @@
 #define GAP_MM 1e-2
 /* Levels meet the profile within 1e-6 mm, which a shallow slope makes more. */
 #define NEAR_MM 1e-5
-/* Centres with so many decimals lie aside by half of the last, along each axis; radii that differ by it mean 1.5 of it at most. */
+/*
+ * Centres with four decimals lie aside by half of the last, along each axis; radii that differ by it mean 1.5 of it at
+ * most.
+ */
 #define DECIMALS_MM 1e-4
 #define ROUNDED_MM  (2.0 * DECIMALS_MM)
 
@@ -143,8 +146,8 @@ static struct profile_point place(const struct profile_point *from, const struct
     if (!m->arc) {
         return (struct profile_point){from->u + f * u, from->v + f * v};
     }
-    const double begin = maths_atan2(from->v - m->centre.v, from->u - m->centre.u);
-    double turn = maths_atan2(m->end.v - m->centre.v, m->end.u - m->centre.u) - begin;
+    const double begin = takt_maths_atan2(from->v - m->centre.v, from->u - m->centre.u);
+    double turn = takt_maths_atan2(m->end.v - m->centre.v, m->end.u - m->centre.u) - begin;
     double sine;
     double cosine;
 
@@ -153,7 +156,7 @@ static struct profile_point place(const struct profile_point *from, const struct
     } else if (!m->left && turn > 0.0) {
         turn -= MATHS_TWO_PI;
     }
-    maths_sincos(begin + f * turn, &sine, &cosine);
+    takt_maths_sincos(begin + f * turn, &sine, &cosine);
     const double r = distance_to_end(from, &m->centre);
 
     return (struct profile_point){m->centre.u + r * cosine, m->centre.v + r * sine};
@@ -172,7 +175,7 @@ static struct seen follow(struct turning *t, const struct profile *p)
     struct profile_point at = p->segment[0].start;
     struct turning_move m;
 
-    while (turning_next(t, &m)) {
+    while (takt_turning_next(t, &m)) {
         for (unsigned i = 0; i <= SAMPLES; i++) {
             const struct profile_point q = place(&at, &m, (double)i / SAMPLES);
             const double d = distance_to_profile(&q, p);
@@ -192,7 +195,7 @@ static struct seen follow(struct turning *t, const struct profile *p)
 
 static double round_decimals(double value)
 {
-    return maths_floor(value / DECIMALS_MM + 0.5) * DECIMALS_MM;
+    return takt_maths_floor(value / DECIMALS_MM + 0.5) * DECIMALS_MM;
 }
 
 /* As a program has it: the radii of an arc differ at its ends. */
@@ -224,7 +227,7 @@ static void try_profile(uint64_t seed, enum turning_kind kind, bool rounded)
     t.words.step_mm = chain_between(&c, 0.3, 4.0);
     t.words.retract_mm = chain_between(&c, 0.0, 1.0);
     t.words.passes = 1;
-    const enum turning_result result = turning_open(&t);
+    const enum turning_result result = takt_turning_open(&t);
 
     if (result != TURNING_GOOD) {
         return;
@@ -289,8 +292,8 @@ static void test_roughing_goes_on_where_two_arcs_meet_upright(void)
     memset(&t, 0, sizeof(t));
     t.profile = p;
     t.words = (struct turning_words){.distance_mm = 0.13, .step_mm = 1.4, .kind = TURNING_ROUGH};
-    TEST_ASSERT_EQUAL(TURNING_GOOD, turning_open(&t));
-    while (turning_next(&t, &m)) {
+    TEST_ASSERT_EQUAL(TURNING_GOOD, takt_turning_open(&t));
+    while (takt_turning_next(&t, &m)) {
         deepest = maths_min(deepest, m.end.u);
     }
     TEST_ASSERT_DOUBLE_WITHIN(NEAR_MM, -10.0 + t.words.distance_mm, deepest);

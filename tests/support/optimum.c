@@ -38,7 +38,7 @@ struct at {
     double time, way, feed, acceleration, peak;
 };
 
-/* Of feeds: rounding. */
+/* Rounding of feeds. */
 #define ROUNDING 1e-9
 
 double optimum_level(const struct optimum_move *m)

@@ -2,10 +2,10 @@
  * The least time for moves under limits of feed, acceleration and jerk along the path: a slow reference for the planner,
  * which shares no code with it and knows no cycles.
  *
- *    feed |      ________                        chain of three: at each joint feed and acceleration are free, as long
+ *    feed |      ________                        chain of three: at each junction feed and acceleration are free, as long
  *         |     /        \__________             as the feed is allowed on both sides of it; the moves between are then
  *         |    /                    \            the fastest ones from one such state to the next
- *         +---/------joint 1---joint 2--\----> position
+ *         +---/------junction 1---junction 2--\----> position
  *
  * Units: mm, s.
  */
@@ -20,7 +20,7 @@ struct optimum_move {
     double feed;         /* highest */
     double acceleration; /* highest, either way */
     double jerk;
-    double joint_feed; /* highest at its end; 0: a stop */
+    double junction_feed; /* highest at its end; 0: a stop */
     double
         level_feed; /* at which it may level off beyond its ends, where moves are faster; 0: feed */
 };
@@ -30,7 +30,7 @@ struct optimum_move {
 /* One move from rest to rest: the closed form. */
 double optimum_single(const struct optimum_move *m);
 
-/* Three moves from rest to rest, by search over the states at both joints: not below the least time, and near it. */
+/* Three moves from rest to rest, by search over the states at both junctions: not below the least time, and near it. */
 double optimum_chain(const struct optimum_move chain[OPTIMUM_MOVES]);
 
 /* A state between two moves. */

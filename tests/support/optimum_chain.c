@@ -1,7 +1,7 @@
 /*
  * The search for the fastest chain: differential evolution (a population of candidates that recombines and keeps what is
- * better) over both joints. The best is often at the edge of what can be done at all, so the state at a joint is not only
- * given as such, but also by the phases that lead to it, from the start, from the other joint, or from the end backwards.
+ * better) over both junctions. The best is often at the edge of what can be done at all, so the state at a junction is not only
+ * given as such, but also by the phases that lead to it, from the start, from the other junction, or from the end backwards.
  */
 #include "optimum.h"
 
@@ -13,14 +13,14 @@
 #define POPULATION  24
 #define GENERATIONS 80
 
-/* How the states at the joints are found of the parameters. */
-enum first_joint { FIRST_GIVEN, FIRST_BY_PHASES, FIRST_WAYS };
-enum second_joint { SECOND_GIVEN, SECOND_BY_PHASES, SECOND_FROM_END, SECOND_WAYS };
+/* How the states at the junctions are found of the parameters. */
+enum first_junction { FIRST_GIVEN, FIRST_BY_PHASES, FIRST_WAYS };
+enum second_junction { SECOND_GIVEN, SECOND_BY_PHASES, SECOND_FROM_END, SECOND_WAYS };
 
 struct family {
     struct optimum_move chain[OPTIMUM_MOVES];
-    enum first_joint first;
-    enum second_joint second;
+    enum first_junction first;
+    enum second_junction second;
 };
 
 struct candidate {
@@ -43,12 +43,13 @@ static double feed_after(const struct optimum_move *m)
     return fmin(sqrt(2.0 * m->acceleration * way), cbrt(4.5 * m->jerk * way * way));
 }
 
-/* A state at the joint between two moves: a part of the highest feed, and of the acceleration that leaves both limits. */
+/* A state at the junction between two moves: a part of the highest feed, and of the acceleration that leaves both limits. */
 static struct optimum_state state_given(const struct optimum_move *before, double feed_max,
                                         const double x[2])
 {
     const struct optimum_move *after = before + 1;
-    const double most = fmin(fmin(before->joint_feed, feed_max), fmin(before->feed, after->feed));
+    const double most =
+        fmin(fmin(before->junction_feed, feed_max), fmin(before->feed, after->feed));
     const double feed = x[0] * most;
     const double part = 2.0 * x[1] - 1.0;
     const struct optimum_move *const beyond = part > 0.0 ? after : before;
@@ -83,11 +84,11 @@ static double pass(const struct optimum_move *m, struct optimum_state *state, bo
 
 static bool may_join(const struct optimum_move *before, const struct optimum_state *state)
 {
-    return state->feed <= before->joint_feed && optimum_may_be(before, state) &&
+    return state->feed <= before->junction_feed && optimum_may_be(before, state) &&
            optimum_may_be(before + 1, state);
 }
 
-static double first_joint(const struct family *f, const double x[2], struct optimum_state *one)
+static double first_junction(const struct family *f, const double x[2], struct optimum_state *one)
 {
     *one = rest;
     if (f->first == FIRST_BY_PHASES) {
@@ -97,9 +98,9 @@ static double first_joint(const struct family *f, const double x[2], struct opti
     return optimum_between(&f->chain[0], &rest, one);
 }
 
-/* From the first joint to the end. */
-static double second_joint(const struct family *f, const double x[2],
-                           const struct optimum_state *one)
+/* From the first junction to the end. */
+static double second_junction(const struct family *f, const double x[2],
+                              const struct optimum_state *one)
 {
     const struct optimum_move *const chain = f->chain;
     struct optimum_state two = rest;
@@ -125,10 +126,10 @@ static double second_joint(const struct family *f, const double x[2],
 static double time_of(const struct family *f, const double x[PARAMETERS])
 {
     struct optimum_state one;
-    const double first_s = first_joint(f, x, &one);
+    const double first_s = first_junction(f, x, &one);
 
     return first_s < HUGE_VAL && may_join(&f->chain[0], &one)
-               ? first_s + second_joint(f, x + 2, &one)
+               ? first_s + second_junction(f, x + 2, &one)
                : HUGE_VAL;
 }
 
@@ -219,8 +220,9 @@ static double search_all(const struct optimum_move chain[OPTIMUM_MOVES])
 
     for (int first = 0; first < FIRST_WAYS; first++) {
         for (int second = 0; second < SECOND_WAYS; second++) {
-            struct family f = {
-                {chain[0], chain[1], chain[2]}, (enum first_joint)first, (enum second_joint)second};
+            struct family f = {{chain[0], chain[1], chain[2]},
+                               (enum first_junction)first,
+                               (enum second_junction)second};
 
             least = fmin(least, search(&f));
             level_beyond(f.chain);
@@ -235,7 +237,7 @@ double optimum_chain(const struct optimum_move chain[OPTIMUM_MOVES])
 {
     struct optimum_move back[OPTIMUM_MOVES] = {chain[2], chain[1], chain[0]};
 
-    back[0].joint_feed = chain[1].joint_feed;
-    back[1].joint_feed = chain[0].joint_feed;
+    back[0].junction_feed = chain[1].junction_feed;
+    back[1].junction_feed = chain[0].junction_feed;
     return fmin(search_all(chain), search_all(back));
 }

@@ -15,7 +15,7 @@ void bench_set_default(struct bench *b)
     virtual_spindle_set_default(&b->spindle_config);
     b->operator=(struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     b->look_ahead = 64;
-    b->lock_config = (struct lock_config){
+    b->spindle_sync_config = (struct spindle_sync_config){
         .ahead_cycles = BENCH_AHEAD,
         .tolerance_mm = 0.1,
         .wait_s = 10.0,
@@ -71,35 +71,36 @@ void bench_start(struct bench *b)
     bench_add(b, &end);
     TEST_ASSERT_NULL(virtual_spindle_check(&b->spindle_config));
     virtual_spindle_init(&b->spindle, &b->spindle_config);
-    b->lock_config.cycle_s = b->limits.cycle_s;
-    b->lock_config.counts = maths_max(1.0, (double)b->spindle_config.encoder_counts_per_revolution);
-    b->lock_config.ramp_rpm_s = b->spindle_config.ramp_rpm_s;
-    b->lock_config.max_rpm = b->spindle_config.max_rpm;
-    lock_init(&b->lock, &b->lock_config);
-    path_init(&b->path, &b->limits, &start);
-    motion_init(&b->motion, &b->path, &start, false);
-    handover_allow(&b->motion);
+    b->spindle_sync_config.cycle_s = b->limits.cycle_s;
+    b->spindle_sync_config.counts =
+        maths_max(1.0, (double)b->spindle_config.encoder_counts_per_revolution);
+    b->spindle_sync_config.ramp_rpm_s = b->spindle_config.ramp_rpm_s;
+    b->spindle_sync_config.max_rpm = b->spindle_config.max_rpm;
+    takt_spindle_sync_init(&b->sync, &b->spindle_sync_config);
+    takt_path_init(&b->path, &b->limits, &start);
+    takt_motion_init(&b->motion, &b->path, &start, false);
+    takt_handover_allow(&b->motion);
 }
 
 static void bench_plan(struct bench *b)
 {
-    if (motion_wanted(&b->motion) == NULL) {
+    if (takt_motion_wanted(&b->motion) == NULL) {
         return;
     }
-    while (b->pushed < b->moves && path_has_room(&b->path) &&
-           motion_ahead(&b->motion) < b->look_ahead) {
-        path_push(&b->path, &b->move[b->pushed++]);
+    while (b->pushed < b->moves && takt_path_has_room(&b->path) &&
+           takt_motion_ahead(&b->motion) < b->look_ahead) {
+        takt_path_push(&b->path, &b->move[b->pushed++]);
     }
     if (b->pushed == b->moves) {
-        path_finish(&b->path);
+        takt_path_finish(&b->path);
     }
-    motion_build(&b->motion);
+    takt_motion_build(&b->motion);
 }
 
-static void bench_judge(struct bench *b)
+static void bench_verifier(struct bench *b)
 {
     const double t = b->limits.cycle_s;
-    struct bench_judge *j = &b->judge;
+    struct bench_verifier *j = &b->verifier;
 
     for (int i = 0; i < BENCH_AXES; i++) {
         double *h = j->history[i];
@@ -118,9 +119,9 @@ static void bench_judge(struct bench *b)
 
 void bench_check_limits(const struct bench *b)
 {
-    TEST_ASSERT_TRUE(b->judge.velocity <= 1.0001);
-    TEST_ASSERT_TRUE(b->judge.acceleration <= 1.0001);
-    TEST_ASSERT_TRUE(b->judge.jerk <= 1.001);
+    TEST_ASSERT_TRUE(b->verifier.velocity <= 1.0001);
+    TEST_ASSERT_TRUE(b->verifier.acceleration <= 1.0001);
+    TEST_ASSERT_TRUE(b->verifier.jerk <= 1.001);
 }
 
 static void bench_apply_events(struct bench *b)
@@ -132,7 +133,7 @@ static void bench_apply_events(struct bench *b)
             b->command_rpm = m->direction == SPINDLE_CCW ? -m->speed_rpm : m->speed_rpm;
         }
     }
-    (void)lock_get_command(&b->lock, &b->command_rpm);
+    (void)spindle_sync_get_command(&b->sync, &b->command_rpm);
 }
 
 static void bench_turn_spindle(struct bench *b)
@@ -146,40 +147,41 @@ static void bench_turn_spindle(struct bench *b)
 bool bench_cycle(struct bench *b)
 {
     bench_plan(b);
-    lock_measure(&b->lock, &b->feedback);
+    spindle_sync_measure(&b->sync, &b->feedback);
     b->is_locked = false;
-    b->locked = LOCK_CYCLE;
-    b->result = motion_cycle(&b->motion, &b->operator, & b->record);
+    b->locked = SPINDLE_SYNC_CYCLE;
+    b->result = takt_motion_cycle(&b->motion, &b->operator, & b->record);
     if (b->result == MOTION_HANDED_OVER) {
         b->is_locked = true;
-        b->locked = lock_cycle(&b->lock, &b->motion, &b->operator, b->command_rpm, &b->record);
+        b->locked =
+            takt_spindle_sync_cycle(&b->sync, &b->motion, &b->operator, b->command_rpm, &b->record);
     }
     bench_apply_events(b);
-    if (b->locked == LOCK_FAILED || b->result == MOTION_DONE) {
+    if (b->locked == SPINDLE_SYNC_FAILED || b->result == MOTION_DONE) {
         return false;
     }
     if (b->is_locked || b->result == MOTION_CYCLE) {
-        bench_judge(b);
+        bench_verifier(b);
         b->point = b->record.cmd;
         b->cycles++;
     }
     memmove(b->sent_mm + 1, b->sent_mm, BENCH_AHEAD * sizeof(double));
-    b->sent_mm[0] = b->lock.follower.at.x_mm;
+    b->sent_mm[0] = b->sync.follower.at.x_mm;
     bench_turn_spindle(b);
     return true;
 }
 
 double bench_off_mm(const struct bench *b)
 {
-    const double rev = b->lock.sense * b->true_rev[1] - b->lock.at.zero_rev;
+    const double rev = b->sync.sense * b->true_rev[1] - b->sync.at.zero_rev;
 
-    return b->sent_mm[BENCH_AHEAD] - (b->lock.at.start_mm + b->lock.at.pitch_mm * rev);
+    return b->sent_mm[BENCH_AHEAD] - (b->sync.at.start_mm + b->sync.at.pitch_mm * rev);
 }
 
 bool bench_is_on_thread(const struct bench *b)
 {
-    const double rev = b->lock.sense * b->true_rev[BENCH_AHEAD];
+    const double rev = b->sync.sense * b->true_rev[BENCH_AHEAD];
 
-    return b->is_locked && b->lock.phase == LOCK_FOLLOWS && !b->lock.follower.braking &&
-           lead_in_is_over(&b->lock.lead_in, rev);
+    return b->is_locked && b->sync.phase == SPINDLE_SYNC_FOLLOWS && !b->sync.follower.braking &&
+           takt_lead_in_is_over(&b->sync.lead_in, rev);
 }

@@ -1,6 +1,6 @@
 /*
  * Path, motion, lock and the virtual spindle together, without drives: for tests of threads. What is thought to happen
- * on a machine is judged here: the axes are at a setpoint BENCH_AHEAD cycles after its cycle.
+ * on a machine is verified here: the axes are at a setpoint BENCH_AHEAD cycles after its cycle.
  */
 #ifndef TAKT_TESTS_THREAD_BENCH_H
 #define TAKT_TESTS_THREAD_BENCH_H
@@ -9,13 +9,13 @@
 #include "motion/handover.h"
 #include "plan/path.h"
 #include "spindle/virtual_spindle.h"
-#include "sync/lock.h"
+#include "sync/spindle_sync.h"
 
 #define BENCH_AHEAD     2
 #define BENCH_MOVES_MAX 64
 #define BENCH_AXES      3
 
-struct bench_judge {
+struct bench_verifier {
     double history[BENCH_AXES][4];       /* newest first */
     double velocity, acceleration, jerk; /* largest ratio to the limit so far */
 };
@@ -24,8 +24,8 @@ struct bench {
     struct plan_limits limits;
     struct path path;
     struct motion motion;
-    struct lock lock;
-    struct lock_config lock_config;
+    struct spindle_sync sync;
+    struct spindle_sync_config spindle_sync_config;
     struct virtual_spindle_config spindle_config;
     struct virtual_spindle spindle;
     struct motion_operator operator;
@@ -37,13 +37,13 @@ struct bench {
     struct cycle_record record;
     struct point point; /* of the last cycle with a record */
     enum motion_result result;
-    enum lock_result locked;
+    enum spindle_sync_result locked;
     bool is_locked; /* the last cycle was */
     bool is_silent; /* the spindle's drive does not answer */
     double true_rev[BENCH_AHEAD +
                     1]; /* angles of this cycle and those after the setpoints still on their way */
     double sent_mm[BENCH_AHEAD + 1]; /* positions on the line, likewise */
-    struct bench_judge judge;
+    struct bench_verifier verifier;
     uint64_t cycles;
 };
 

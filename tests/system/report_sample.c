@@ -40,8 +40,9 @@ static struct point spiral(double u)
 {
     const double angle_rad = 5.0 * MATHS_TWO_PI * u;
     const double radius_mm = 12.0 + 28.0 * u;
-    return (struct point){{60.0 + radius_mm * maths_cos(angle_rad),
-                           50.0 + radius_mm * maths_sin(angle_rad), -6.0 + 4.0 * u, MATHS_PI * u}};
+    return (struct point){{60.0 + radius_mm * takt_maths_cos(angle_rad),
+                           50.0 + radius_mm * takt_maths_sin(angle_rad), -6.0 + 4.0 * u,
+                           MATHS_PI * u}};
 }
 
 static struct point place(size_t stage, double u)

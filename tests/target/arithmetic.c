@@ -115,15 +115,15 @@ static int memory_works(void)
 
 int main(void)
 {
-    const int in = semihosting_open("pairs.bin", SEMIHOSTING_READ);
-    const int out = semihosting_open("answers.bin", SEMIHOSTING_WRITE);
+    const int in = takt_semihosting_open("pairs.bin", SEMIHOSTING_READ);
+    const int out = takt_semihosting_open("answers.bin", SEMIHOSTING_WRITE);
     size_t count;
 
-    while ((count = semihosting_read(in, pairs, sizeof pairs) / sizeof pairs[0]) > 0) {
+    while ((count = takt_semihosting_read(in, pairs, sizeof pairs) / sizeof pairs[0]) > 0) {
         for (size_t i = 0; i < count; i++)
             compute(&pairs[i], &answers[i]);
-        if (!semihosting_write(out, answers, count * sizeof answers[0]))
-            semihosting_exit(3);
+        if (!takt_semihosting_write(out, answers, count * sizeof answers[0]))
+            takt_semihosting_exit(3);
     }
-    semihosting_exit(memory_works() ? 0 : 1);
+    takt_semihosting_exit(memory_works() ? 0 : 1);
 }

@@ -2,7 +2,7 @@
 
 Frames and calls are read from the disassembly, so libraries count, too; where the compiler has told a frame (-fstack-usage)
 the larger counts. Calls through pointers are those of the table below: who calls, and what may be behind the pointer. A
-call that is in no row, and a recursion without a stated bound, are errors.
+call that is in no row, and a recursion without a stated bound, are errors. The table's names are without takt_.
 """
 
 import collections
@@ -14,7 +14,7 @@ EXCEPTION_BYTES = 27 * 4
 
 # Values inside values of a part program: PROGRAM_NESTING_MAX, and one more for the outermost. One function counts them.
 NESTING = 17
-NESTED = "expression_read"
+NESTED = "takt_expression_read"
 
 PORT = r"(cortex_)?(un)?lock|now_us|now_ns|reply|write_log"
 LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need|prepare)"
@@ -136,17 +136,22 @@ def add_usage(functions, files):
                     functions[known].frame = max(functions[known].frame, int(size))
 
 
+def plain(name):
+    """As the table has it: without an address behind it, and without the prefix that the linker sees."""
+    return re.sub(r"\..*", "", name).removeprefix("takt_")
+
+
 def add_pointers(functions):
     """Calls through pointers, by the table. Returns the names of those that are in no row."""
     unknown = []
     for name, function in functions.items():
         if not function.indirect:
             continue
-        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, re.sub(r"\..*", "", name))]
+        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, plain(name))]
         if not rows:
             unknown.append(name)
         for behind in rows:
-            function.calls.update(other for other in functions if re.fullmatch(behind, re.sub(r"\..*", "", other)))
+            function.calls.update(other for other in functions if re.fullmatch(behind, plain(other)))
     return unknown
 
 

@@ -4,7 +4,7 @@
  *     FLASH FOUND [NEW TICKS]
  *
  * It writes the settings that count to FOUND, nothing if there are none that can be used. Then it stores NEW, as the panel
- * does, and stops for good after so many ticks of its clock, 40 instructions each; 0: when it is done. The exit status is
+ * does, and stops for good after TICKS ticks of its clock, 40 instructions each; 0: when it is done. The exit status is
  * 0 when it came to its end, STOPPED when the clock was first, and something else when it failed.
  */
 #include "mps2/file_flash.h"
@@ -30,9 +30,9 @@ static struct {
     uint8_t coming[SETTINGS_MAX];
 } board;
 
-void port_systick(void)
+void takt_port_systick(void)
 {
-    semihosting_exit(STOPPED);
+    takt_semihosting_exit(STOPPED);
 }
 
 static char *next_word(char **line)
@@ -58,17 +58,17 @@ static uint32_t number_of(const char *word)
 /* What a start finds. */
 static bool tell_found(const char *path)
 {
-    const int file = semihosting_open(path, SEMIHOSTING_WRITE);
+    const int file = takt_semihosting_open(path, SEMIHOSTING_WRITE);
     const uint8_t *bytes;
     uint32_t size;
     struct diagnostic wrong;
 
     if (file < 0)
         return false;
-    if (!store_get(&board.store, &bytes, &size) ||
-        !settings_read(bytes, size, &board.machine, &board.tables, NULL, &wrong))
+    if (!takt_store_get(&board.store, &bytes, &size) ||
+        !takt_settings_read(bytes, size, &board.machine, &board.tables, NULL, &wrong))
         return true;
-    return semihosting_write(file, bytes, size);
+    return takt_semihosting_write(file, bytes, size);
 }
 
 static bool may_load(void *context)
@@ -114,9 +114,9 @@ static bool store_new(const char *path, uint32_t ticks)
 {
     static const struct settings_upload_port port = {
         .may_load = may_load, .borrow = lend_tables, .log = no_log};
-    const int file = semihosting_open(path, SEMIHOSTING_READ);
-    const struct panel_store to = settings_upload_open(&board.upload, &board.store, &port);
-    const size_t size = file < 0 ? 0 : semihosting_read(file, board.coming, SETTINGS_MAX);
+    const int file = takt_semihosting_open(path, SEMIHOSTING_READ);
+    const struct panel_store to = takt_settings_upload_open(&board.upload, &board.store, &port);
+    const size_t size = file < 0 ? 0 : takt_semihosting_read(file, board.coming, SETTINGS_MAX);
 
     if (size == 0)
         return false;
@@ -130,19 +130,19 @@ int main(void)
     char *line = words;
     struct flash_port flash;
 
-    if (!semihosting_command_line(words, sizeof words))
-        semihosting_exit(FAILED);
+    if (!takt_semihosting_command_line(words, sizeof words))
+        takt_semihosting_exit(FAILED);
     (void)next_word(&line); /* the image's own name */
-    if (!file_flash_open(&board.file, next_word(&line), &flash))
-        semihosting_exit(FAILED);
-    store_open(&board.store, &flash);
+    if (!takt_file_flash_open(&board.file, next_word(&line), &flash))
+        takt_semihosting_exit(FAILED);
+    takt_store_open(&board.store, &flash);
     if (!tell_found(next_word(&line)))
-        semihosting_exit(FAILED);
+        takt_semihosting_exit(FAILED);
     if (*line != '\0') {
         const char *path = next_word(&line);
 
         if (!store_new(path, number_of(line)))
-            semihosting_exit(FAILED);
+            takt_semihosting_exit(FAILED);
     }
-    semihosting_exit(DONE);
+    takt_semihosting_exit(DONE);
 }

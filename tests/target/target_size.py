@@ -27,11 +27,11 @@ FORBIDDEN = re.compile(
 
 # Who interrupts whom, the most urgent last: of those of one row at most one at a time.
 DESK_INTERRUPTS = (
-    ("port_systick",),
-    ("uart_0_receive", "uart_0_send", "uart_1_receive", "uart_1_send", "uart_2_receive", "uart_2_send", "uart_3_receive", "uart_3_send"))
-DRIVE_INTERRUPTS = (("on_can_sent", "on_can_received"), ("port_nmi", "port_fault"))
+    ("takt_port_systick",),
+    ("takt_uart_0_receive", "takt_uart_0_send", "takt_uart_1_receive", "takt_uart_1_send", "takt_uart_2_receive", "takt_uart_2_send", "takt_uart_3_receive", "takt_uart_3_send"))
+DRIVE_INTERRUPTS = (("on_can_sent", "on_can_received"), ("takt_port_nmi", "takt_port_fault"))
 CHIP_INTERRUPTS = (
-    ("on_cycle",), ("on_log",), ("on_panel",), ("on_can_sent", "on_can_received"), ("port_nmi", "port_fault"))
+    ("on_cycle",), ("on_log",), ("on_panel",), ("on_can_sent", "on_can_received"), ("takt_port_nmi", "takt_port_fault"))
 
 
 def symbols(elf):

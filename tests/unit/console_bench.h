@@ -8,7 +8,7 @@
 #include "console/console.h"
 #include "console/numbers.h"
 #include "panel/panel.h"
-#include "service_judge.h"
+#include "service_verifier.h"
 
 #include <stdlib.h>
 
@@ -26,37 +26,37 @@ static size_t said_length;
 static void look_panel(void *context, struct panel_snapshot *snapshot)
 {
     (void)context;
-    service_look(&service, snapshot);
+    takt_service_look(&service, snapshot);
 }
 
 static enum panel_verdict order_service(void *context, const struct panel_order *wanted)
 {
     (void)context;
-    return service_order(&service, wanted);
+    return takt_service_order(&service, wanted);
 }
 
 static void hear_panel(void *context)
 {
     (void)context;
-    service_alive(&service);
+    takt_service_alive(&service);
 }
 
 static enum panel_refusal order_panel(void *context, const struct panel_order *wanted)
 {
     (void)context;
-    return panel_client_order(&sender, wanted);
+    return takt_panel_client_order(&sender, wanted);
 }
 
 static enum panel_refusal unlock_panel(void *context, uint32_t password)
 {
     (void)context;
-    return panel_client_unlock(&sender, password);
+    return takt_panel_client_unlock(&sender, password);
 }
 
 static bool tell_service(void *context, enum console_fact fact, double value[AXIS_COUNT])
 {
     (void)context;
-    service_tell(&service, fact, value);
+    takt_service_tell(&service, fact, value);
     return true;
 }
 
@@ -72,19 +72,19 @@ static void hear(void *context, const char *text, size_t length)
 static void open_lines(void *context, struct source *source)
 {
     (void)context;
-    lines_open(&lines, source);
+    takt_lines_open(&lines, source);
 }
 
 static void refuse_line(void *context, const struct diagnostic *why)
 {
     (void)context;
-    lines_refuse(&lines, (uint8_t)console_error_of(why->code), why);
+    takt_lines_refuse(&lines, (uint8_t)takt_console_error_of(why->code), why);
 }
 
 static void end_lines(void *context, enum takt_error why)
 {
     (void)context;
-    lines_end(&lines, why == TAKT_OK ? CONSOLE_OK : CONSOLE_LOCKED, why);
+    takt_lines_end(&lines, why == TAKT_OK ? CONSOLE_OK : CONSOLE_LOCKED, why);
 }
 
 static void forget(void)
@@ -108,21 +108,21 @@ static void console_bench_set_up(uint32_t password)
 
     service_lines = (struct service_lines){open_lines, refuse_line, end_lines, NULL};
     bench_set_up();
-    panel_init(&panel, &config);
-    panel_client_enter(&sender, &panel);
-    panel_client_enter(&other, &panel);
-    lines_init(&lines, console_text, sizeof console_text);
-    console_init(&console, &console_config);
+    takt_panel_init(&panel, &config);
+    takt_panel_client_enter(&sender, &panel);
+    takt_panel_client_enter(&other, &panel);
+    takt_lines_init(&lines, console_text, sizeof console_text);
+    takt_console_init(&console, &console_config);
     forget();
-    console_enter(&console);
+    takt_console_enter(&console);
     begin_judging();
 }
 
 /* One cycle, and the console after it. */
 static void step(void)
 {
-    judged_cycle();
-    console_step(&console);
+    verified_cycle();
+    takt_console_step(&console);
 }
 
 static void steps(unsigned count)
@@ -135,11 +135,11 @@ static void steps(unsigned count)
 static void give(const char *text)
 {
     for (; *text != '\0'; text++) {
-        for (unsigned i = 0; i < BENCH_CYCLES_MAX && !console_has_room(&console); i++)
+        for (unsigned i = 0; i < BENCH_CYCLES_MAX && !takt_console_has_room(&console); i++)
             step();
-        console_take(&console, (uint8_t)*text);
+        takt_console_take(&console, (uint8_t)*text);
     }
-    console_step(&console);
+    takt_console_step(&console);
 }
 
 static unsigned count_of(const char *word)
@@ -156,7 +156,7 @@ static unsigned answers(void)
     return count_of("ok\r\n") + count_of("error:");
 }
 
-/* Until there are so many answers. */
+/* Until there are this many answers. */
 static void await(unsigned count)
 {
     for (unsigned i = 0; i < BENCH_CYCLES_MAX && answers() < count; i++)
@@ -166,11 +166,11 @@ static void await(unsigned count)
 
 static inline void settle(void)
 {
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && (service_get_state(&service) != PANEL_IDLE ||
-                                                  console_is_waiting(&console));
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && (takt_service_get_state(&service) != PANEL_IDLE ||
+                                                  takt_console_is_waiting(&console));
          i++)
         step();
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_IDLE, service_get_state(&service), said);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_IDLE, takt_service_get_state(&service), said);
 }
 
 static void expect(const char *word)

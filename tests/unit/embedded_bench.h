@@ -119,8 +119,8 @@ static inline void cycle(void)
 {
     const struct inputs inputs = inputs_idle();
 
-    embedded_background(&embedded);
-    embedded_cycle(&embedded, &inputs, false);
+    takt_embedded_background(&embedded);
+    takt_embedded_cycle(&embedded, &inputs, false);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         watch_axis(i);
     now_ns += CYCLE_NS;
@@ -130,9 +130,9 @@ static inline void cycle(void)
 
 static inline void wait_for(enum panel_state state)
 {
-    for (unsigned i = 0; i < CYCLES_MAX && service_get_state(&embedded.service) != state; i++)
+    for (unsigned i = 0; i < CYCLES_MAX && takt_service_get_state(&embedded.service) != state; i++)
         cycle();
-    TEST_ASSERT_EQUAL_INT(state, service_get_state(&embedded.service));
+    TEST_ASSERT_EQUAL_INT(state, takt_service_get_state(&embedded.service));
 }
 
 static inline bool send(void *context, const struct can_frame *frame)
@@ -169,7 +169,7 @@ static inline void power_on_with(const struct service_lines *lines)
         .lines = lines,
     };
 
-    embedded_init(&embedded, &config);
+    takt_embedded_init(&embedded, &config);
 }
 
 static inline void power_on(void)
@@ -182,7 +182,7 @@ static inline void bench_set_up_with(const struct service_lines *lines)
     struct virtual_drives_config virtual;
 
     virtual_drives_set_default(&virtual, AXIS_LINEAR_COUNT);
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.look_ahead_blocks = LOOK_AHEAD;
     TEST_ASSERT_TRUE(bus_init(&bus, machine.can_bitrate));
     bus_port = bus_attach(&bus, NULL);
@@ -210,13 +210,13 @@ static inline unsigned ask(const uint8_t *pdu, size_t length)
     uint16_t crc;
 
     memcpy(frame + 1, pdu, length);
-    crc = crc16(frame, length + 1);
+    crc = takt_crc16(frame, length + 1);
     frame[length + 1] = (uint8_t)crc;
     frame[length + 2] = (uint8_t)(crc >> 8);
     replied_length = 0;
     for (size_t i = 0; i < length + 3; i++)
-        embedded_take_byte(&embedded, frame[i], (uint32_t)(now_ns / 1000));
-    embedded_background(&embedded);
+        takt_embedded_take_byte(&embedded, frame[i], (uint32_t)(now_ns / 1000));
+    takt_embedded_background(&embedded);
     TEST_ASSERT_GREATER_THAN(0, (int)replied_length);
     return (replied[1] & 0x80U) != 0 ? replied[2] : 0;
 }
@@ -236,13 +236,13 @@ static inline unsigned write_words(uint16_t address, const uint16_t *word, unsig
 static inline unsigned set(enum panel_id id, uint32_t value)
 {
     const uint16_t words[2] = {(uint16_t)(value >> 16), (uint16_t)value};
-    const bool is_wide = panel_registers[id].words == 2;
+    const bool is_wide = takt_panel_registers[id].words == 2;
     uint8_t coil[5] = {5};
 
-    if (panel_registers[id].table != MODBUS_COILS)
-        return write_words(panel_registers[id].address, is_wide ? words : words + 1,
+    if (takt_panel_registers[id].table != MODBUS_COILS)
+        return write_words(takt_panel_registers[id].address, is_wide ? words : words + 1,
                            is_wide ? 2 : 1);
-    modbus_write16(coil + 1, panel_registers[id].address);
+    modbus_write16(coil + 1, takt_panel_registers[id].address);
     modbus_write16(coil + 3, value != 0 ? 0xFF00 : 0);
     return ask(coil, sizeof coil);
 }
@@ -251,10 +251,10 @@ static inline uint32_t get(enum panel_id id)
 {
     uint8_t pdu[5] = {4};
 
-    modbus_write16(pdu + 1, panel_registers[id].address);
-    modbus_write16(pdu + 3, panel_registers[id].words);
+    modbus_write16(pdu + 1, takt_panel_registers[id].address);
+    modbus_write16(pdu + 3, takt_panel_registers[id].words);
     TEST_ASSERT_EQUAL_UINT(0, ask(pdu, sizeof pdu));
-    return panel_registers[id].words == 1
+    return takt_panel_registers[id].words == 1
                ? modbus_read16(replied + 3)
                : (uint32_t)modbus_read16(replied + 3) << 16 | modbus_read16(replied + 5);
 }
@@ -262,7 +262,7 @@ static inline uint32_t get(enum panel_id id)
 static inline unsigned begin(const char *text, size_t size, uint32_t command)
 {
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_UPLOAD_SIZE, (uint32_t)size));
-    TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_UPLOAD_CRC, crc32_add(CRC32_START, text, size)));
+    TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_UPLOAD_CRC, takt_crc32_add(CRC32_START, text, size)));
     return set(REGISTER_UPLOAD_COMMAND, command);
 }
 
@@ -272,11 +272,11 @@ static inline unsigned bring(const char *text, size_t size)
     const uint32_t at = get(REGISTER_UPLOAD_RECEIVED);
     const size_t length = size - at < PANEL_CHUNK_MAX ? size - at : PANEL_CHUNK_MAX;
     uint16_t word[CHUNK_WORDS] = {(uint16_t)(at >> 16), (uint16_t)at, (uint16_t)length,
-                                  crc16((const uint8_t *)text + at, length)};
+                                  takt_crc16((const uint8_t *)text + at, length)};
 
     for (size_t i = 0; i < length; i++)
         word[4 + i / 2] |= (uint16_t)((uint8_t)text[at + i] << (i % 2 == 0 ? 8 : 0));
-    return write_words(panel_registers[REGISTER_UPLOAD_OFFSET].address, word, CHUNK_WORDS);
+    return write_words(takt_panel_registers[REGISTER_UPLOAD_OFFSET].address, word, CHUNK_WORDS);
 }
 
 #endif

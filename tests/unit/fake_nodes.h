@@ -23,7 +23,7 @@ struct fake_rule {
     uint32_t abort_code; /* not 0: the request is aborted */
     uint32_t write_code; /* not 0: so it is if it writes */
     uint32_t taken_from; /* not 0: what it writes is taken all the same from this value on */
-    unsigned silent;     /* so many requests are not answered */
+    unsigned silent;     /* how many requests are not answered */
 };
 
 struct fake_written {
@@ -89,7 +89,7 @@ static inline void fake_nodes_keep(struct fake_nodes *nodes, uint8_t node, uint3
 static inline void fake_nodes_answer(struct fake_nodes *nodes, const struct can_frame *frame)
 {
     uint8_t node = (uint8_t)(frame->id - SDO_REQUEST_FUNCTION);
-    uint32_t object = sdo_read_object(frame);
+    uint32_t object = takt_sdo_read_object(frame);
     struct fake_rule *rule = fake_nodes_rule(nodes, node, object);
     bool is_upload = (frame->data[0] & SDO_COMMAND_MASK) == SDO_REQUEST_UPLOAD;
     uint32_t value = rule ? rule->value : fake_nodes_value(nodes, node, object);
@@ -105,21 +105,21 @@ static inline void fake_nodes_answer(struct fake_nodes *nodes, const struct can_
                     : !is_upload && rule->write_code != 0 ? rule->write_code
                                                           : rule->abort_code;
     if (code != 0) {
-        sdo_write_abort(fake_nodes_add(nodes), SDO_RESPONSE_FUNCTION, node, object, code);
+        takt_sdo_write_abort(fake_nodes_add(nodes), SDO_RESPONSE_FUNCTION, node, object, code);
         return;
     }
     if (!is_upload)
         fake_nodes_keep(nodes, node, object, frame);
-    sdo_write_initiate(fake_nodes_add(nodes), (uint16_t)(SDO_RESPONSE_FUNCTION + node),
-                       is_upload ? SDO_RESPONSE_UPLOAD | SDO_EXPEDITED | SDO_SIZE_GIVEN
-                                 : SDO_RESPONSE_DOWNLOAD,
-                       object, is_upload ? value : 0);
+    takt_sdo_write_initiate(fake_nodes_add(nodes), (uint16_t)(SDO_RESPONSE_FUNCTION + node),
+                            is_upload ? SDO_RESPONSE_UPLOAD | SDO_EXPEDITED | SDO_SIZE_GIVEN
+                                      : SDO_RESPONSE_DOWNLOAD,
+                            object, is_upload ? value : 0);
 }
 
 static inline void fake_nodes_guard(struct fake_nodes *nodes, uint8_t node)
 {
     struct can_frame *answer = fake_nodes_add(nodes);
-    nmt_write_heartbeat(answer, node, NMT_OPERATIONAL);
+    takt_nmt_write_heartbeat(answer, node, NMT_OPERATIONAL);
     if (nodes->guards[node]++ % 2 == 1)
         answer->data[0] |= (uint8_t)nodes->toggles;
 }
@@ -134,7 +134,7 @@ static inline void fake_nodes_take(struct fake_nodes *nodes, const struct can_fr
         nodes->starts[node] += frame->data[0] == NMT_START;
         nodes->holds[node] += frame->data[0] == NMT_ENTER_PREOPERATIONAL;
         if (frame->data[0] == NMT_RESET_COMMUNICATION && node != nodes->mute)
-            nmt_write_heartbeat(fake_nodes_add(nodes), node, NMT_BOOTED);
+            takt_nmt_write_heartbeat(fake_nodes_add(nodes), node, NMT_BOOTED);
     } else if (nmt_is_guard(frame, node)) {
         fake_nodes_guard(nodes, node);
     } else if (node != nodes->mute && (frame->id & 0x780) == SDO_REQUEST_FUNCTION) {

@@ -73,9 +73,9 @@ static inline struct drives_config three_axes(void)
 static inline void cycle(void)
 {
     sent_count = 0;
-    drives_receive(&drives, &port);
-    drives_sync(&drives, &port);
-    drives_send(&drives, &port, &setpoint);
+    takt_drives_receive(&drives, &port);
+    takt_drives_sync(&drives, &port);
+    takt_drives_send(&drives, &port, &setpoint);
     cycles_run++;
 }
 
@@ -86,7 +86,7 @@ static inline void boot(const struct drives_config *config)
     memset(&setpoint, 0, sizeof setpoint);
     refused_id = 0xFFFF;
     cycles_run = 0;
-    drives_init(&drives, config);
+    takt_drives_init(&drives, config);
     while (nodes.starts[1] == 0 && cycles_run < START_CYCLES)
         cycle();
     TEST_ASSERT_EQUAL_INT(DRIVES_STARTING, drives_get_state(&drives));
@@ -108,7 +108,7 @@ static inline void put_status(unsigned node, enum cia402_state state, int32_t ac
     struct can_frame *frame = fake_nodes_add(&nodes);
     frame->id = (uint16_t)(PDO_TPDO1_FUNCTION + node);
     frame->length = 6;
-    little_endian_write16(frame->data, (uint16_t)(cia402_statusword(state) | 0x1210));
+    little_endian_write16(frame->data, (uint16_t)(takt_cia402_statusword(state) | 0x1210));
     little_endian_write32(frame->data + 2, (uint32_t)actual_inc);
 }
 
@@ -161,7 +161,7 @@ static inline void follow(unsigned cycles)
 
 static inline void assert_fault(enum takt_error error, char axis)
 {
-    const struct diagnostic *fault = drives_get_fault(&drives);
+    const struct diagnostic *fault = takt_drives_get_fault(&drives);
     char word[] = "? (node ?)";
     word[0] = axis;
     word[8] = (char)('1' + axis - 'X');

@@ -8,8 +8,8 @@
 
 /* A/J is 20 cycles. */
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 static double x_mm; /* where it ends */
@@ -19,7 +19,7 @@ static void begin_path(void)
     const struct point start = {{0}};
 
     x_mm = 0.0;
-    path_init(&path, &limits, &start);
+    takt_path_init(&path, &limits, &start);
 }
 
 static void push(double length_mm, double feed_mm_s)
@@ -33,7 +33,7 @@ static void push(double length_mm, double feed_mm_s)
     m.turns = 1;
     x_mm += length_mm;
     m.end.at[AXIS_X] = x_mm;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 #endif

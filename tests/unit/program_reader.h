@@ -33,7 +33,7 @@ static const struct tool_table reader_table = {reader_tools, 2};
 static inline void reader_prepare(struct reader *r)
 {
     memset(r, 0, sizeof(*r));
-    parameters_clear(&r->parameters);
+    takt_parameters_clear(&r->parameters);
     r->config.axes = 0xfU;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const double limit = i < AXIS_LINEAR_COUNT ? 500.0 : 360.0 * RAD_PER_DEGREE;
@@ -51,8 +51,8 @@ static inline void reader_text(struct reader *r, const char *text)
 {
     struct source source;
 
-    source_open_text(&source, &r->text, text, strlen(text));
-    program_open(&r->program, &r->config, &source);
+    takt_source_open_text(&source, &r->text, text, strlen(text));
+    takt_program_open(&r->program, &r->config, &source);
 }
 
 static inline void reader_open(struct reader *r, const char *text)
@@ -68,7 +68,7 @@ static inline void reader_check(const struct reader *r, enum program_result resu
     char text[DIAGNOSTIC_TEXT_MAX] = "";
 
     if (result == PROGRAM_ERROR) {
-        (void)diagnostic_text(&r->diagnostic, text);
+        (void)takt_diagnostic_text(&r->diagnostic, text);
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_MOVE, result, text);
     TEST_ASSERT_EQUAL_INT(kind, move->kind);
@@ -85,7 +85,7 @@ static inline void reader_check_end(const struct move *move, double x, double y,
 static inline struct move reader_next(struct reader *r, enum move_kind kind)
 {
     struct move move = {0};
-    const enum program_result result = program_next(&r->program, &move, &r->diagnostic);
+    const enum program_result result = takt_program_next(&r->program, &move, &r->diagnostic);
 
     reader_check(r, result, kind, &move);
     return move;
@@ -111,7 +111,7 @@ static inline void reader_expect_error(struct reader *r, enum takt_error code)
 {
     struct move move;
 
-    TEST_ASSERT_EQUAL_INT(PROGRAM_ERROR, program_next(&r->program, &move, &r->diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_ERROR, takt_program_next(&r->program, &move, &r->diagnostic));
     TEST_ASSERT_EQUAL_INT(code, r->diagnostic.code);
 }
 
@@ -123,7 +123,7 @@ static inline void reader_expect_refused(struct reader *r, const char *text, enu
 
     reader_open(r, text);
     do {
-        result = program_next(&r->program, &move, &r->diagnostic);
+        result = takt_program_next(&r->program, &move, &r->diagnostic);
     } while (result == PROGRAM_MOVE);
     TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(code, r->diagnostic.code, text);
@@ -134,8 +134,8 @@ static inline void reader_expect_end(struct reader *r)
     struct move move;
 
     (void)reader_next(r, MOVE_END);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END, program_next(&r->program, &move, &r->diagnostic));
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END, program_next(&r->program, &move, &r->diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_END, takt_program_next(&r->program, &move, &r->diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_END, takt_program_next(&r->program, &move, &r->diagnostic));
 }
 
 #endif

@@ -31,8 +31,8 @@ static inline struct plan_limits random_rate_machine(void)
     l.axes = 7;
     l.cycle_s = RANDOM_RATE_CYCLE_S;
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        l.velocity_mm_s[i] = maths_power(10.0, random_rate_between(1.3, 2.7));
-        l.acceleration_mm_s2[i] = maths_power(10.0, random_rate_between(2.3, 4.0));
+        l.velocity_mm_s[i] = takt_maths_power(10.0, random_rate_between(1.3, 2.7));
+        l.acceleration_mm_s2[i] = takt_maths_power(10.0, random_rate_between(2.3, 4.0));
         l.jerk_mm_s3[i] =
             l.acceleration_mm_s2[i] / (RANDOM_RATE_CYCLE_S * random_rate_between(5.0, 100.0));
     }
@@ -40,8 +40,8 @@ static inline struct plan_limits random_rate_machine(void)
 }
 
 /*
- * Of one axis, at a place of the curve that needs all it may, in a cycle between two states of the rate: acceleration and
- * jerk over the limits (rate.h), with the larger of what the rate was and is.
+ * Need of one axis, at a place of the curve that needs all it may, in a cycle between two states of the rate:
+ * acceleration and jerk over the limits (rate.h), with the larger of what the rate was and is.
  */
 static inline double random_rate_need(const struct plan_limits *l, int axis,
                                       const struct rate *before, const struct rate *now)

@@ -35,7 +35,7 @@ static bool bench_open(void *context, struct source *source)
     (void)context;
     if (program == NULL)
         return false;
-    source_open_text(source, &program_text, program, strlen(program));
+    takt_source_open_text(source, &program_text, program, strlen(program));
     return true;
 }
 
@@ -47,8 +47,8 @@ static void bench_adopt(void *context)
 
 static void cycle(void)
 {
-    service_background(&service);
-    service_cycle(&service, &world);
+    takt_service_background(&service);
+    takt_service_cycle(&service, &world);
     now_ns += BENCH_CYCLE_NS;
     bus_run_until(&bus, now_ns);
     virtual_drives_step(&drives, BENCH_CYCLE_NS);
@@ -56,9 +56,9 @@ static void cycle(void)
 
 static void wait_for(enum panel_state state)
 {
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && takt_service_get_state(&service) != state; i++)
         cycle();
-    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(state, takt_service_get_state(&service));
 }
 
 static void bench_start(void)
@@ -75,7 +75,7 @@ static void bench_start(void)
         .lines = service_lines,
     };
 
-    service_init(&service, &config);
+    takt_service_init(&service, &config);
     wait_for(PANEL_IDLE);
 }
 
@@ -85,10 +85,10 @@ static void bench_set_up_machine(void)
     struct virtual_drives_config virtual;
 
     virtual_drives_set_default(&virtual, BENCH_DRIVES);
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     TEST_ASSERT_TRUE(bus_init(&bus, machine.can_bitrate));
     virtual_drives_init(&drives, &bus, &virtual);
-    parameters_clear(&parameters);
+    takt_parameters_clear(&parameters);
     memset(tools, 0, sizeof tools);
     tools[0].number = 3;
     program = staged = NULL;
@@ -109,19 +109,19 @@ static inline enum panel_verdict order(enum panel_id id, int64_t value)
 {
     const struct panel_order one = {.count = 1, .item = {{id, value}}};
 
-    return service_order(&service, &one);
+    return takt_service_order(&service, &one);
 }
 
 static inline void must(enum panel_id id, int64_t value)
 {
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_DONE, order(id, value), panel_texts[id].name);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_DONE, order(id, value), takt_panel_texts[id].name);
 }
 
 static inline int64_t shown(enum panel_id id)
 {
     static struct panel_snapshot snapshot;
 
-    service_look(&service, &snapshot);
+    takt_service_look(&service, &snapshot);
     return panel_value(&snapshot, id);
 }
 
@@ -129,7 +129,7 @@ static inline const char *alarm_text(void)
 {
     static struct panel_snapshot snapshot;
 
-    service_look(&service, &snapshot);
+    takt_service_look(&service, &snapshot);
     return snapshot.alarm_text;
 }
 
@@ -143,7 +143,7 @@ static inline void load(const char *text)
     };
 
     staged = text;
-    TEST_ASSERT_EQUAL_INT(PANEL_DONE, service_order(&service, &commit));
+    TEST_ASSERT_EQUAL_INT(PANEL_DONE, takt_service_order(&service, &commit));
 }
 
 static inline void start_line(const char *line)
@@ -152,7 +152,7 @@ static inline void start_line(const char *line)
 
     memcpy(start.mdi, line, strlen(line) + 1);
     must(REGISTER_MODE, PANEL_MODE_MDI);
-    TEST_ASSERT_EQUAL_INT(PANEL_DONE, service_order(&service, &start));
+    TEST_ASSERT_EQUAL_INT(PANEL_DONE, takt_service_order(&service, &start));
 }
 
 #endif

@@ -51,7 +51,7 @@ static inline uint16_t bits_of_following(unsigned node)
     return is_cyclic && shown[node] == CIA402_ENABLED ? CIA402_FOLLOWS_TARGET : 0;
 }
 
-static unsigned deaf_edges;  /* so many fault resets come too early */
+static unsigned deaf_edges;  /* how many fault resets come too early */
 static uint16_t before[128]; /* controlwords */
 
 static inline enum cia402_state next_state(unsigned node)
@@ -62,7 +62,7 @@ static inline enum cia402_state next_state(unsigned node)
         deaf_edges--;
         return CIA402_FAULT;
     }
-    return cia402_next_state(shown[node], control[node], previous);
+    return takt_cia402_next_state(shown[node], control[node], previous);
 }
 
 /* Drives that do what the controlword says. */
@@ -75,11 +75,11 @@ static inline void put_statuses(void)
             continue;
         shown[node] = next_state(node);
         if (cycles_run % 100 == node)
-            nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
+            takt_nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
         frame = fake_nodes_add(&nodes);
         *frame = (struct can_frame){.id = (uint16_t)(PDO_TPDO1_FUNCTION + node), .length = 6};
         little_endian_write16(frame->data,
-                              (uint16_t)(cia402_statusword(shown[node]) | shown_bits[node] |
+                              (uint16_t)(takt_cia402_statusword(shown[node]) | shown_bits[node] |
                                          (follows_at_once ? bits_of_following(node) : 0)));
         little_endian_write32(frame->data + 2, (uint32_t)shown_inc);
     }
@@ -89,9 +89,9 @@ static inline void cycle(void)
 {
     static const struct point nowhere;
     put_statuses();
-    drives_receive(&drives, &port);
-    drives_sync(&drives, &port);
-    drives_send(&drives, &port, &nowhere);
+    takt_drives_receive(&drives, &port);
+    takt_drives_sync(&drives, &port);
+    takt_drives_send(&drives, &port, &nowhere);
     cycles_run++;
 }
 
@@ -104,7 +104,7 @@ static inline void run_until(enum drives_state state)
 
 static inline void run_start(void)
 {
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     while (drives_get_state(&drives) == DRIVES_STARTING && cycles_run < 2 * START_CYCLES)
         cycle();
 }
@@ -152,7 +152,7 @@ static inline void set_rule(struct fake_rule rule)
 static inline void assert_text(const char *expected)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
-    (void)diagnostic_text(drives_get_fault(&drives), text);
+    (void)takt_diagnostic_text(takt_drives_get_fault(&drives), text);
     TEST_ASSERT_EQUAL_STRING(expected, text);
 }
 

@@ -44,7 +44,7 @@ static void add_element(struct ahead_path *path, double start_mm)
     path->element[path->count].start_mm = start_mm;
     path->element[path->count].block = (uint32_t)path->count + 1;
     if (path->count > 0)
-        ends[count++] = (uint64_t)maths_ceil(start_mm * REPLAY_END_PARTS);
+        ends[count++] = (uint64_t)takt_maths_ceil(start_mm * REPLAY_END_PARTS);
     path->count++;
 }
 
@@ -77,9 +77,9 @@ static uint64_t write_and_read(const struct ahead_path *path)
     TEST_ASSERT_TRUE(encoder_end(&encoder, 1));
     trail_free(&trail);
     rewind(file);
-    intake_open(&intake, &source);
+    takt_intake_open(&intake, &source);
     while (!intake.ended) {
-        intake_read(&intake);
+        takt_intake_read(&intake);
         TEST_ASSERT_EQUAL_INT(REPLAY_GOOD, intake.fault);
         intake.intervals_taken = intake.intervals_came;
         intake.sections_taken = intake.sections_came;
@@ -94,7 +94,7 @@ static uint64_t write_and_read(const struct ahead_path *path)
     return encoder.bytes;
 }
 
-static size_t interval_of(uint64_t end)
+static size_t takt_interval_of(uint64_t end)
 {
     return end > 0 ? (size_t)((end - 1) / REPLAY_END_PARTS) : 0;
 }
@@ -105,9 +105,9 @@ static size_t neighbours(size_t k)
     size_t first = k;
     size_t last = k;
 
-    while (first > 0 && interval_of(ends[first - 1]) == interval_of(ends[k]))
+    while (first > 0 && takt_interval_of(ends[first - 1]) == takt_interval_of(ends[k]))
         first--;
-    while (last + 1 < count && interval_of(ends[last + 1]) == interval_of(ends[k]))
+    while (last + 1 < count && takt_interval_of(ends[last + 1]) == takt_interval_of(ends[k]))
         last++;
     return last - first + 1;
 }
@@ -131,7 +131,7 @@ static void test_ends_come_back_as_closely_as_the_format_says(void)
     TEST_ASSERT_NOT_NULL(path.element);
     add_element(&path, 0);
     while (at < INTERVALS && path.count < ENDS_MAX) {
-        at += maths_power(10, between(-3, 1));
+        at += takt_maths_power(10, between(-3, 1));
         if (at < INTERVALS)
             add_element(&path, at);
     }

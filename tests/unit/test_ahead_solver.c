@@ -61,7 +61,7 @@ static void make_square(struct ahead_path *path, double side_mm)
         struct point from = {{side_mm * corner[i][0], side_mm * corner[i][1]}};
         struct point to = {{side_mm * corner[i + 1][0], side_mm * corner[i + 1][1]}};
 
-        TEST_ASSERT_TRUE(curve_set_line(&e.curve, &from, &to));
+        TEST_ASSERT_TRUE(takt_curve_set_line(&e.curve, &from, &to));
         TEST_ASSERT_TRUE(ahead_path_add(path, &e));
     }
 }

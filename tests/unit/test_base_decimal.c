@@ -41,7 +41,7 @@ static unsigned random_below(uint64_t *state, unsigned limit)
 static void check_read_as(const char *text, double expected, size_t expected_taken)
 {
     double value = -1.0;
-    size_t taken = decimal_read(text, strlen(text), &value);
+    size_t taken = takt_decimal_read(text, strlen(text), &value);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(expected_taken, taken, text);
     TEST_ASSERT_TRUE_MESSAGE(value == expected, text);
 }
@@ -87,9 +87,9 @@ static void test_reads_nothing_where_no_digit_stands(void)
 static void test_reads_no_further_than_the_length(void)
 {
     double value;
-    TEST_ASSERT_EQUAL_UINT(2, decimal_read("123", 2, &value));
+    TEST_ASSERT_EQUAL_UINT(2, takt_decimal_read("123", 2, &value));
     TEST_ASSERT_TRUE(value == 12.0);
-    TEST_ASSERT_EQUAL_UINT(0, decimal_read("123", 0, &value));
+    TEST_ASSERT_EQUAL_UINT(0, takt_decimal_read("123", 0, &value));
 }
 
 static void make_random_number(uint64_t *state, char *text, unsigned digits_max)
@@ -182,7 +182,7 @@ static void test_more_than_19_digits_are_read_within_one_ulp(void)
     for (int i = 0; i < RANDOM_COUNT; i++) {
         make_random_number(&state, text, 35);
         double value, exact = strtod(text, NULL);
-        TEST_ASSERT_EQUAL_UINT(strlen(text), decimal_read(text, strlen(text), &value));
+        TEST_ASSERT_EQUAL_UINT(strlen(text), takt_decimal_read(text, strlen(text), &value));
         TEST_ASSERT_TRUE(value == exact || value == nextafter(exact, 0.0));
     }
     check_read_as("10000000000000000000000000000", 1e28, 29);
@@ -221,7 +221,7 @@ static void test_very_large_and_very_small_numbers_end_in_infinity_and_zero(void
 static void check_written(const char *expected, double value, unsigned places)
 {
     char text[DECIMAL_TEXT_MAX + 1];
-    size_t length = decimal_write(text, value, places);
+    size_t length = takt_decimal_write(text, value, places);
     TEST_ASSERT_TRUE(length <= DECIMAL_TEXT_MAX);
     text[length] = '\0';
     TEST_ASSERT_EQUAL_STRING(expected, text);
@@ -333,8 +333,8 @@ static void test_what_is_written_reads_back(void)
     for (int i = 0; i < RANDOM_COUNT; i++) {
         double micrometres = (double)random_below(&state, 2000000000);
         double value;
-        size_t length = decimal_write(text, micrometres / 1e3, 3);
-        TEST_ASSERT_EQUAL_UINT(length, decimal_read(text, length, &value));
+        size_t length = takt_decimal_write(text, micrometres / 1e3, 3);
+        TEST_ASSERT_EQUAL_UINT(length, takt_decimal_read(text, length, &value));
         TEST_ASSERT_TRUE(value == micrometres / 1e3);
     }
 }

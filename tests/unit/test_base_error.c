@@ -16,8 +16,8 @@ static void check_text(const char *expected, enum takt_error code, const char *w
 {
     struct diagnostic d;
     char text[DIAGNOSTIC_TEXT_MAX];
-    diagnostic_set(&d, code, 1, 1, word, strlen(word), value);
-    size_t length = diagnostic_text(&d, text);
+    takt_diagnostic_set(&d, code, 1, 1, word, strlen(word), value);
+    size_t length = takt_diagnostic_text(&d, text);
     TEST_ASSERT_EQUAL_STRING(expected, text);
     TEST_ASSERT_EQUAL_UINT(strlen(expected), length);
 }
@@ -46,9 +46,9 @@ static void check_travel(const char *expected, const char *axis, double value, d
     struct diagnostic d;
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    diagnostic_set(&d, TAKT_ERROR_TRAVEL_EXCEEDED, 1, 1, axis, 1, value);
-    diagnostic_set_limit(&d, limit);
-    (void)diagnostic_text(&d, text);
+    takt_diagnostic_set(&d, TAKT_ERROR_TRAVEL_EXCEEDED, 1, 1, axis, 1, value);
+    takt_diagnostic_set_limit(&d, limit);
+    (void)takt_diagnostic_text(&d, text);
     TEST_ASSERT_EQUAL_STRING(expected, text);
 }
 
@@ -67,7 +67,7 @@ static void test_percent_signs_of_the_word_are_left_alone(void)
 static void test_set_keeps_code_place_word_and_value(void)
 {
     struct diagnostic d;
-    diagnostic_set(&d, TAKT_ERROR_FEED_MISSING, 14, 7, "G1X5", 2, 3.5);
+    takt_diagnostic_set(&d, TAKT_ERROR_FEED_MISSING, 14, 7, "G1X5", 2, 3.5);
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_FEED_MISSING, d.code);
     TEST_ASSERT_EQUAL_UINT32(14, d.line);
     TEST_ASSERT_EQUAL_UINT32(7, d.column);
@@ -79,7 +79,7 @@ static void check_kept_word(const char *expected, const char *word, size_t lengt
 {
     struct diagnostic d;
     memset(&d, 'x', sizeof d);
-    diagnostic_set(&d, TAKT_ERROR_WORD_UNKNOWN, 1, 1, word, length, 0.0);
+    takt_diagnostic_set(&d, TAKT_ERROR_WORD_UNKNOWN, 1, 1, word, length, 0.0);
     TEST_ASSERT_EQUAL_STRING(expected, d.word);
 }
 
@@ -110,8 +110,8 @@ static void check_that_everything_fits(enum takt_error code)
 {
     struct diagnostic d;
     char text[DIAGNOSTIC_TEXT_MAX];
-    diagnostic_set(&d, code, 1, 1, "1234567890123456789012345678901", 31, -123456789.123456);
-    size_t length = diagnostic_text(&d, text);
+    takt_diagnostic_set(&d, code, 1, 1, "1234567890123456789012345678901", 31, -123456789.123456);
+    size_t length = takt_diagnostic_text(&d, text);
     TEST_ASSERT_TRUE_MESSAGE(length > 0 && length < DIAGNOSTIC_TEXT_MAX - 1, text);
     TEST_ASSERT_EQUAL_UINT(strlen(text), length);
     TEST_ASSERT_NULL_MESSAGE(strchr(text, '%'), text);
@@ -128,13 +128,13 @@ static void test_codes_are_written_with_4_or_8_hexadecimal_digits_and_their_mean
 {
     struct diagnostic d;
     char text[DIAGNOSTIC_TEXT_MAX];
-    diagnostic_set(&d, TAKT_ERROR_DRIVE_REFUSES, 0, 0, "X", 1, 0x06010002);
+    takt_diagnostic_set(&d, TAKT_ERROR_DRIVE_REFUSES, 0, 0, "X", 1, 0x06010002);
     d.meaning = "read only";
-    (void)diagnostic_text(&d, text);
+    (void)takt_diagnostic_text(&d, text);
     TEST_ASSERT_EQUAL_STRING("the drive of axis X refuses with abort code 06010002: read only",
                              text);
-    diagnostic_set(&d, TAKT_ERROR_DRIVE_FAULT, 0, 0, "X", 1, 0x611);
-    (void)diagnostic_text(&d, text);
+    takt_diagnostic_set(&d, TAKT_ERROR_DRIVE_FAULT, 0, 0, "X", 1, 0x611);
+    (void)takt_diagnostic_text(&d, text);
     TEST_ASSERT_EQUAL_STRING("the drive of axis X reports 0611: ?", text);
 }
 

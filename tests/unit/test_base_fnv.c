@@ -36,7 +36,7 @@ static void test_the_comparison_gives_the_published_values(void)
 static void check_double(double value, const char *bytes_from_the_least)
 {
     uint64_t expected = fnv_of_bytes(FNV_START, (const unsigned char *)bytes_from_the_least, 8);
-    TEST_ASSERT_TRUE(fnv_add_double(FNV_START, value) == expected);
+    TEST_ASSERT_TRUE(takt_fnv_add_double(FNV_START, value) == expected);
 }
 
 static void test_a_double_counts_as_its_eight_bytes_from_the_least_significant(void)
@@ -50,8 +50,8 @@ static void test_a_double_counts_as_its_eight_bytes_from_the_least_significant(v
 
 static void test_the_order_of_values_counts(void)
 {
-    uint64_t forward = fnv_add_double(fnv_add_double(FNV_START, 1.0), 2.0);
-    uint64_t backward = fnv_add_double(fnv_add_double(FNV_START, 2.0), 1.0);
+    uint64_t forward = takt_fnv_add_double(takt_fnv_add_double(FNV_START, 1.0), 2.0);
+    uint64_t backward = takt_fnv_add_double(takt_fnv_add_double(FNV_START, 2.0), 1.0);
     TEST_ASSERT_TRUE(forward != backward);
     TEST_ASSERT_TRUE(forward ==
                      fnv_of_bytes(FNV_START,

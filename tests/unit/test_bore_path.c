@@ -43,14 +43,14 @@ static struct curve curve_of(size_t i)
 
     switch (piece->kind) {
     case BORE_LINE:
-        good = curve_set_line(&c, &start, &end);
+        good = takt_curve_set_line(&c, &start, &end);
         break;
     case BORE_ARC:
-        good = curve_set_arc(&c, &start, &end, PLANE_XY, piece->centre_mm, false, 1);
+        good = takt_curve_set_arc(&c, &start, &end, PLANE_XY, piece->centre_mm, false, 1);
         break;
     case BORE_INVOLUTE:
-        good =
-            curve_set_involute(&c, &start, &end, PLANE_XY, piece->centre_mm, piece->base_mm, false);
+        good = takt_curve_set_involute(&c, &start, &end, PLANE_XY, piece->centre_mm, piece->base_mm,
+                                       false);
         break;
     }
     TEST_ASSERT_TRUE(good);
@@ -73,8 +73,8 @@ static void check_smooth(double sine)
         const struct curve behind = curve_of(i);
         struct point t0, t1;
 
-        curve_tangent(&before, before.length_mm, &t0);
-        curve_tangent(&behind, 0.0, &t1);
+        takt_curve_tangent(&before, before.length_mm, &t0);
+        takt_curve_tangent(&behind, 0.0, &t1);
         TEST_ASSERT_TRUE(between(&t0, &t1) < sine);
     }
 }
@@ -95,10 +95,10 @@ static void test_a_finishing_pass_comes_and_goes_in_mirror_images(void)
 
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, first.length_mm, last.length_mm);
     for (int i = 0; i <= 20; i++) {
-        const double u[2] = {maths_sin(s.turned_rad), -maths_cos(s.turned_rad)};
+        const double u[2] = {takt_maths_sin(s.turned_rad), -takt_maths_cos(s.turned_rad)};
 
-        curve_point(&first, first.length_mm * i / 20, &in);
-        curve_point(&last, last.length_mm * (20 - i) / 20, &out);
+        takt_curve_point(&first, first.length_mm * i / 20, &in);
+        takt_curve_point(&last, last.length_mm * (20 - i) / 20, &out);
         const double along = 2.0 * (in.at[0] * u[0] + in.at[1] * u[1]);
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, along * u[0] - in.at[0], out.at[0]);
@@ -116,9 +116,10 @@ static double off_spiral(const struct bore_spiral *s, const struct point *p)
     const double y = p->at[1] - centre[1];
     const double d = maths_sqrt(x * x + y * y) / s->base_mm;
     const double phi = d > 1.0 ? maths_sqrt((d - 1.0) * (d + 1.0)) : 0.0;
-    const double turned = maths_atan2(y, x) - s->turned_rad - (phi - maths_atan2(phi, 1.0));
+    const double turned =
+        takt_maths_atan2(y, x) - s->turned_rad - (phi - takt_maths_atan2(phi, 1.0));
 
-    return s->base_mm * maths_abs(turned - MATHS_TWO_PI * maths_round(turned / MATHS_TWO_PI));
+    return s->base_mm * maths_abs(turned - MATHS_TWO_PI * takt_maths_round(turned / MATHS_TWO_PI));
 }
 
 static double worst_off(const struct bore_spiral *s, size_t pieces)
@@ -131,7 +132,7 @@ static double worst_off(const struct bore_spiral *s, size_t pieces)
         for (int k = 0; k <= 400; k++) {
             struct point p;
 
-            curve_point(&c, c.length_mm * k / 400, &p);
+            takt_curve_point(&c, c.length_mm * k / 400, &p);
             worst = maths_max(worst, off_spiral(s, &p));
         }
     }
@@ -190,7 +191,7 @@ static void test_every_spiral_leads_from_the_centre_around_the_circle(void)
     }
 }
 
-/* Of two poles: 2 n - 1 half circles whose radii grow by R / (2 n). */
+/* With two poles there are 2 n - 1 half circles whose radii grow by R / (2 n). */
 static void test_joined_arcs_grow_evenly(void)
 {
     bore_rival_path(BORE_RIVAL_TWO_POLES, 24.0, 8, 1e-3, 0.0, &path);
@@ -218,9 +219,9 @@ static void test_the_archimedean_spiral_keeps_its_distance(void)
         for (int k = 1; k <= 100; k++) {
             struct point p;
 
-            curve_point(&c, c.length_mm * k / 100, &p);
+            takt_curve_point(&c, c.length_mm * k / 100, &p);
             const double radius = maths_sqrt(p.at[0] * p.at[0] + p.at[1] * p.at[1]);
-            const double angle = maths_atan2(p.at[1], p.at[0]);
+            const double angle = takt_maths_atan2(p.at[1], p.at[0]);
 
             turned += angle - last < -MATHS_PI ? MATHS_TWO_PI : 0.0;
             last = angle;

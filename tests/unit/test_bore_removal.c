@@ -54,7 +54,7 @@ static void archimedes(void)
         double turn = TURNS * maths_sqrt((double)i / POINTS);
         double sine, cosine;
 
-        maths_sincos(MATHS_TWO_PI * turn, &sine, &cosine);
+        takt_maths_sincos(MATHS_TWO_PI * turn, &sine, &cosine);
         TEST_ASSERT_TRUE(bore_track_add(&track, STEP_MM * turn * cosine, STEP_MM * turn * sine, 0));
     }
 }
@@ -69,7 +69,7 @@ static void half_circles(void)
         for (unsigned i = 0; i < 2000; i++) {
             double sine, cosine;
 
-            maths_sincos(MATHS_PI * (k + i / 2000.0), &sine, &cosine);
+            takt_maths_sincos(MATHS_PI * (k + i / 2000.0), &sine, &cosine);
             TEST_ASSERT_TRUE(bore_track_add(&track, centre + radius * cosine, radius * sine, 0));
         }
     }
@@ -139,7 +139,7 @@ static void test_engaged_angle_of_a_late_turn(void)
     double rho = RADIUS_MM - 0.55 * STEP_MM;
     double edge = rho - STEP_MM + CUTTER_MM;
     double cosine = (edge * edge - rho * rho - CUTTER_MM * CUTTER_MM) / (2 * rho * CUTTER_MM);
-    double angle = maths_atan2(maths_sqrt(1 - cosine * cosine), cosine);
+    double angle = takt_maths_atan2(maths_sqrt(1 - cosine * cosine), cosine);
 
     TEST_ASSERT_DOUBLE_WITHIN(0.02, angle, 0.5 * (e.engaged_rad.least + e.engaged_rad.most));
 }
@@ -204,7 +204,7 @@ static void helix(void)
         double down = i < AROUND ? DOWN_MM * i / AROUND : DOWN_MM;
         double sine, cosine;
 
-        maths_sincos(angle, &sine, &cosine);
+        takt_maths_sincos(angle, &sine, &cosine);
         TEST_ASSERT_TRUE(bore_track_add(&track, HELIX_MM * cosine, HELIX_MM * sine, -down));
     }
     TEST_ASSERT_TRUE(bore_removal_make_helix(&removal, &level, &track, CUTTER_MM, DOWN_MM, TURNS));
@@ -234,14 +234,14 @@ static double counted_engagement(double a)
         double sine, cosine;
         bool held = false;
 
-        maths_sincos(a, &sine, &cosine);
+        takt_maths_sincos(a, &sine, &cosine);
         double x = HELIX_MM * cosine, y = HELIX_MM * sine;
 
-        maths_sincos(to, &sine, &cosine);
+        takt_maths_sincos(to, &sine, &cosine);
         x += CUTTER_MM * cosine;
         y += CUTTER_MM * sine;
         for (unsigned k = 0; k < 1000 && !held; k++) {
-            maths_sincos(a * k / 1000, &sine, &cosine);
+            takt_maths_sincos(a * k / 1000, &sine, &cosine);
             double dx = x - HELIX_MM * cosine, dy = y - HELIX_MM * sine;
 
             held = dx * dx + dy * dy < CUTTER_MM * CUTTER_MM * (1 - 1e-6);

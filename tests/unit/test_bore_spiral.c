@@ -57,7 +57,7 @@ static void test_roughing_has_the_figures_of_the_page(void)
 /* The page's 9.04482 is 5e-6 from the angle that its own length, 242.24973, belongs to. */
 static void test_finishing_has_the_figures_of_the_page(void)
 {
-    double joint[2];
+    double junction[2];
 
     set_finishing();
     TEST_ASSERT_EQUAL_DOUBLE(80.0, spiral.radius_mm);
@@ -68,9 +68,9 @@ static void test_finishing_has_the_figures_of_the_page(void)
     TEST_ASSERT_DOUBLE_WITHIN(5e-5, 57.5811, form.radius_start_mm);
     TEST_ASSERT_EQUAL_DOUBLE(80.0, form.radius_end_mm);
     TEST_ASSERT_DOUBLE_WITHIN(5e-6, 0.94657, spiral.turned_rad);
-    bore_spiral_point(&spiral, MATHS_TWO_PI * spiral.turns, joint);
-    TEST_ASSERT_DOUBLE_WITHIN(5e-5, 64.9131, joint[0]);
-    TEST_ASSERT_DOUBLE_WITHIN(5e-5, -46.7577, joint[1]);
+    bore_spiral_point(&spiral, MATHS_TWO_PI * spiral.turns, junction);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-5, 64.9131, junction[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-5, -46.7577, junction[1]);
 }
 
 static void test_the_spiral_begins_at_the_point_asked_for(void)
@@ -106,8 +106,8 @@ static void test_the_start_may_be_in_any_direction(void)
         const double angle = i * MATHS_PI / 12.0;
         double p[2];
 
-        job.start_mm[0] = 33.0 * maths_cos(angle);
-        job.start_mm[1] = 33.0 * maths_sin(angle);
+        job.start_mm[0] = 33.0 * takt_maths_cos(angle);
+        job.start_mm[1] = 33.0 * takt_maths_sin(angle);
         bore_set_spiral(&job, BORE_FINISHING, &spiral);
         bore_spiral_point(&spiral, spiral.start_rad, p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, job.start_mm[0], p[0]);

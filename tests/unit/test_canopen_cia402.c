@@ -16,10 +16,10 @@ void tearDown(void)
 static void test_every_state_is_read_from_its_statusword_whatever_the_other_bits(void)
 {
     for (unsigned state = 0; state < STATES; state++) {
-        uint16_t word = cia402_statusword((enum cia402_state)state);
+        uint16_t word = takt_cia402_statusword((enum cia402_state)state);
         for (unsigned other = 0; other < 0x10000; other += 0x80) {
-            TEST_ASSERT_EQUAL_INT(state, cia402_state((uint16_t)(word | other)));
-            TEST_ASSERT_EQUAL_INT(state, cia402_state((uint16_t)(word | other | 0x10)));
+            TEST_ASSERT_EQUAL_INT(state, takt_cia402_state((uint16_t)(word | other)));
+            TEST_ASSERT_EQUAL_INT(state, takt_cia402_state((uint16_t)(word | other | 0x10)));
         }
     }
 }
@@ -39,13 +39,13 @@ static void test_statuswords_match_at_most_one_pattern_of_the_standard(void)
         for (unsigned i = 0; i < STATES; i++)
             if ((word & patterns[i].mask) == patterns[i].value)
                 expected = patterns[i].state;
-        TEST_ASSERT_EQUAL_INT(expected, cia402_state((uint16_t)word));
+        TEST_ASSERT_EQUAL_INT(expected, takt_cia402_state((uint16_t)word));
     }
 }
 
 static void assert_step(enum cia402_state from, uint16_t controlword, enum cia402_state to)
 {
-    TEST_ASSERT_EQUAL_INT(to, cia402_next_state(from, controlword, 0));
+    TEST_ASSERT_EQUAL_INT(to, takt_cia402_next_state(from, controlword, 0));
 }
 
 static void test_the_way_up_and_down_step_by_step(void)
@@ -79,9 +79,9 @@ static void test_quick_stop_brakes_an_enabled_drive_and_switches_off_others(void
 
 static void test_fault_is_left_by_the_rising_edge_of_reset_alone(void)
 {
-    enum cia402_state next = cia402_next_state(CIA402_FAULT, CIA402_FAULT_RESET, 0);
+    enum cia402_state next = takt_cia402_next_state(CIA402_FAULT, CIA402_FAULT_RESET, 0);
     TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, next);
-    next = cia402_next_state(CIA402_FAULT, CIA402_FAULT_RESET, CIA402_FAULT_RESET);
+    next = takt_cia402_next_state(CIA402_FAULT, CIA402_FAULT_RESET, CIA402_FAULT_RESET);
     TEST_ASSERT_EQUAL_INT(CIA402_FAULT, next);
     assert_step(CIA402_FAULT, CIA402_ENABLE_OPERATION, CIA402_FAULT);
     assert_step(CIA402_FAULT, CIA402_DISABLE_VOLTAGE, CIA402_FAULT);
@@ -101,8 +101,8 @@ static void test_the_advised_steps_lead_to_enabled_in_at_most_four(void)
         enum cia402_state state = starts[i];
         uint16_t previous = 0;
         for (unsigned step = 0; step < 4; step++) {
-            uint16_t controlword = cia402_step_to_enabled(state);
-            state = cia402_next_state(state, controlword, previous);
+            uint16_t controlword = takt_cia402_step_to_enabled(state);
+            state = takt_cia402_next_state(state, controlword, previous);
             previous = controlword;
         }
         TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state);
@@ -112,7 +112,7 @@ static void test_the_advised_steps_lead_to_enabled_in_at_most_four(void)
 static void test_the_short_test_for_enabled_agrees_with_the_state(void)
 {
     for (unsigned word = 0; word <= 0xFFFF; word++)
-        TEST_ASSERT_EQUAL_INT(cia402_state((uint16_t)word) == CIA402_ENABLED,
+        TEST_ASSERT_EQUAL_INT(takt_cia402_state((uint16_t)word) == CIA402_ENABLED,
                               cia402_is_enabled((uint16_t)word));
 }
 
@@ -120,8 +120,8 @@ static void test_every_state_has_a_name(void)
 {
     for (unsigned i = CIA402_NOT_READY; i <= CIA402_FAULT; i++)
         for (unsigned k = CIA402_NOT_READY; k < i; k++)
-            TEST_ASSERT_NOT_EQUAL(0, strcmp(cia402_state_text((enum cia402_state)i),
-                                            cia402_state_text((enum cia402_state)k)));
+            TEST_ASSERT_NOT_EQUAL(0, strcmp(takt_cia402_state_text((enum cia402_state)i),
+                                            takt_cia402_state_text((enum cia402_state)k)));
 }
 
 int main(void)

@@ -22,23 +22,24 @@ static void test_entries_come_in_their_order(void)
     const struct concise_dcf dcf = {two, sizeof two};
     struct concise_dcf_entry entry;
     uint32_t at = CONCISE_DCF_FIRST, object;
-    TEST_ASSERT_TRUE(concise_dcf_is_well(&dcf, &object));
-    TEST_ASSERT_TRUE(concise_dcf_next(&dcf, &at, &entry));
+    TEST_ASSERT_TRUE(takt_concise_dcf_is_well(&dcf, &object));
+    TEST_ASSERT_TRUE(takt_concise_dcf_next(&dcf, &at, &entry));
     TEST_ASSERT_EQUAL_HEX32(SDO_OBJECT(0x1017, 0), entry.object);
     TEST_ASSERT_EQUAL_UINT32(2, entry.size);
     TEST_ASSERT_EQUAL_UINT(100, entry.value[0]);
-    TEST_ASSERT_FALSE(concise_dcf_has(&dcf, at, entry.object));
-    TEST_ASSERT_TRUE(concise_dcf_has(&dcf, at, SDO_OBJECT(0x2000, 1)));
-    TEST_ASSERT_TRUE(concise_dcf_next(&dcf, &at, &entry));
+    TEST_ASSERT_FALSE(takt_concise_dcf_has(&dcf, at, entry.object));
+    TEST_ASSERT_TRUE(takt_concise_dcf_has(&dcf, at, SDO_OBJECT(0x2000, 1)));
+    TEST_ASSERT_TRUE(takt_concise_dcf_next(&dcf, &at, &entry));
     TEST_ASSERT_EQUAL_HEX32(SDO_OBJECT(0x2000, 1), entry.object);
-    TEST_ASSERT_FALSE(concise_dcf_next(&dcf, &at, &entry));
+    TEST_ASSERT_FALSE(takt_concise_dcf_next(&dcf, &at, &entry));
 }
 
 static void test_one_that_is_cut_off_anywhere_is_none(void)
 {
     uint32_t object;
     for (uint32_t length = 0; length < sizeof two; length++)
-        TEST_ASSERT_FALSE(concise_dcf_is_well(&(const struct concise_dcf){two, length}, &object));
+        TEST_ASSERT_FALSE(
+            takt_concise_dcf_is_well(&(const struct concise_dcf){two, length}, &object));
 }
 
 static void check_byte(unsigned place, uint8_t value, uint32_t expected)
@@ -48,7 +49,8 @@ static void check_byte(unsigned place, uint8_t value, uint32_t expected)
     for (unsigned i = 0; i < sizeof two; i++)
         bytes[i] = two[i];
     bytes[place] = value;
-    TEST_ASSERT_FALSE(concise_dcf_is_well(&(const struct concise_dcf){bytes, sizeof two}, &object));
+    TEST_ASSERT_FALSE(
+        takt_concise_dcf_is_well(&(const struct concise_dcf){bytes, sizeof two}, &object));
     TEST_ASSERT_EQUAL_HEX32(expected, object);
 }
 

@@ -16,7 +16,7 @@ static void test_an_emergency_is_the_frame_of_the_standard(void)
     struct emcy emcy = {
         .node = 3, .code = 0x8611, .error_register = 0x21, .vendor = {1, 2, 3, 4, 5}};
     struct can_frame frame;
-    emcy_write(&frame, &emcy);
+    takt_emcy_write(&frame, &emcy);
     TEST_ASSERT_EQUAL_HEX16(0x083, frame.id);
     TEST_ASSERT_EQUAL_INT(8, frame.length);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(bytes, frame.data, 8);
@@ -28,8 +28,8 @@ static void test_an_emergency_reads_back(void)
         .node = 127, .code = 0x8210, .error_register = 0x11, .vendor = {9, 8, 7, 6, 5}};
     struct emcy read = {0};
     struct can_frame frame;
-    emcy_write(&frame, &emcy);
-    TEST_ASSERT_TRUE(emcy_read(&frame, &read));
+    takt_emcy_write(&frame, &emcy);
+    TEST_ASSERT_TRUE(takt_emcy_read(&frame, &read));
     TEST_ASSERT_EQUAL_INT(127, read.node);
     TEST_ASSERT_EQUAL_HEX16(0x8210, read.code);
     TEST_ASSERT_EQUAL_HEX8(0x11, read.error_register);
@@ -40,42 +40,42 @@ static void test_sync_and_short_frames_are_no_emergency(void)
 {
     struct can_frame frame = {.id = 0x080, .length = 8};
     struct emcy emcy;
-    TEST_ASSERT_FALSE(emcy_read(&frame, &emcy));
+    TEST_ASSERT_FALSE(takt_emcy_read(&frame, &emcy));
     frame.id = 0x081;
     frame.length = 7;
-    TEST_ASSERT_FALSE(emcy_read(&frame, &emcy));
+    TEST_ASSERT_FALSE(takt_emcy_read(&frame, &emcy));
     frame.id = 0x181;
     frame.length = 8;
-    TEST_ASSERT_FALSE(emcy_read(&frame, &emcy));
+    TEST_ASSERT_FALSE(takt_emcy_read(&frame, &emcy));
 }
 
 static void test_codes_have_a_meaning_and_unknown_ones_that_of_their_class(void)
 {
-    TEST_ASSERT_EQUAL_STRING("following error", emcy_text(0x8611));
-    TEST_ASSERT_EQUAL_STRING("positioning controller", emcy_text(0x8600));
-    TEST_ASSERT_EQUAL_STRING("DC bus voltage", emcy_text(0x32FE));
-    TEST_ASSERT_EQUAL_STRING("voltage", emcy_text(0x3FFF));
-    TEST_ASSERT_EQUAL_STRING("made up by the manufacturer", emcy_text(0x0E01));
+    TEST_ASSERT_EQUAL_STRING("following error", takt_emcy_text(0x8611));
+    TEST_ASSERT_EQUAL_STRING("positioning controller", takt_emcy_text(0x8600));
+    TEST_ASSERT_EQUAL_STRING("DC bus voltage", takt_emcy_text(0x32FE));
+    TEST_ASSERT_EQUAL_STRING("voltage", takt_emcy_text(0x3FFF));
+    TEST_ASSERT_EQUAL_STRING("made up by the manufacturer", takt_emcy_text(0x0E01));
 }
 
 static void test_sync_has_identifier_80_and_no_data(void)
 {
     struct can_frame frame = {.id = 0x7FF, .length = 8};
-    sync_write(&frame);
+    takt_sync_write(&frame);
     TEST_ASSERT_EQUAL_HEX16(0x080, frame.id);
     TEST_ASSERT_EQUAL_INT(0, frame.length);
-    TEST_ASSERT_TRUE(sync_is(&frame));
+    TEST_ASSERT_TRUE(takt_sync_is(&frame));
 }
 
 static void test_sync_with_a_counter_is_sync_and_an_emergency_is_not(void)
 {
     struct can_frame frame = {.id = 0x080, .length = 1};
-    TEST_ASSERT_TRUE(sync_is(&frame));
+    TEST_ASSERT_TRUE(takt_sync_is(&frame));
     frame.length = 2;
-    TEST_ASSERT_FALSE(sync_is(&frame));
+    TEST_ASSERT_FALSE(takt_sync_is(&frame));
     frame.id = 0x081;
     frame.length = 0;
-    TEST_ASSERT_FALSE(sync_is(&frame));
+    TEST_ASSERT_FALSE(takt_sync_is(&frame));
 }
 
 int main(void)

@@ -34,7 +34,7 @@ static void make(struct circle_turn *t, shape out_mm, double x_mm, double y_mm)
         const double r = t->radius_mm + out_mm(degrees);
         double sine, cosine;
 
-        maths_sincos(degrees * MATHS_PI / 180, &sine, &cosine);
+        takt_maths_sincos(degrees * MATHS_PI / 180, &sine, &cosine);
         circle_turn_add(t, (const double[]){x_mm + r * cosine, y_mm + r * sine});
     }
 }
@@ -62,13 +62,13 @@ static double larger(double degrees)
 
 static double oval(double degrees)
 {
-    return 0.003 * maths_cos(2 * degrees * MATHS_PI / 180);
+    return 0.003 * takt_maths_cos(2 * degrees * MATHS_PI / 180);
 }
 
 /* Play of 4 um in X: the table is behind by half of it, to the right while X goes left. */
 static double with_play(double degrees)
 {
-    return (degrees < 180 ? 0.002 : -0.002) * maths_cos(degrees * MATHS_PI / 180);
+    return (degrees < 180 ? 0.002 : -0.002) * takt_maths_cos(degrees * MATHS_PI / 180);
 }
 
 static double spiked(double degrees)

@@ -24,9 +24,9 @@ static const struct diagram_limits limits = {
 /* a = 1000, j = 50000: a is reached from 20 mm/s on. */
 static void test_a_ramp_takes_the_time_of_the_formula(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(2.0 * maths_sqrt(10.0 / 50000.0), diagram_ramp_s(&limits, 10.0));
-    TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.02, diagram_ramp_s(&limits, 100.0));
-    TEST_ASSERT_EQUAL_DOUBLE(0.04, diagram_ramp_s(&limits, 20.0));
+    TEST_ASSERT_EQUAL_DOUBLE(2.0 * maths_sqrt(10.0 / 50000.0), takt_diagram_ramp_s(&limits, 10.0));
+    TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.02, takt_diagram_ramp_s(&limits, 100.0));
+    TEST_ASSERT_EQUAL_DOUBLE(0.04, takt_diagram_ramp_s(&limits, 20.0));
 }
 
 static void test_the_integral_of_an_s_curve_is_its_sum(void)
@@ -37,10 +37,10 @@ static void test_the_integral_of_an_s_curve_is_its_sum(void)
         double sum = 0.0;
 
         for (unsigned i = 0; i < 1000; i++) {
-            sum += 1e-3 * s_curve(1e-3 * (i + 0.5), rounds[r]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-6, sum, s_curve_integral(1e-3 * (i + 1), rounds[r]));
+            sum += 1e-3 * takt_s_curve(1e-3 * (i + 0.5), rounds[r]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, sum, takt_s_curve_integral(1e-3 * (i + 1), rounds[r]));
         }
-        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5, s_curve_integral(1.0, rounds[r]));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5, takt_s_curve_integral(1.0, rounds[r]));
     }
 }
 
@@ -52,19 +52,19 @@ static void check_diagram(double length, double start, double end)
     double sum = 0.0;
 
     l.length_mm = length;
-    diagram_set(&d, &l, start, end, CYCLE_S);
-    const double cycles = diagram_time(&d) / CYCLE_S;
+    takt_diagram_set(&d, &l, start, end, CYCLE_S);
+    const double cycles = takt_diagram_time(&d) / CYCLE_S;
 
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, maths_round(cycles), cycles);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, takt_maths_round(cycles), cycles);
     TEST_ASSERT_TRUE(d.kl <= 1.0 + 1e-9 && d.kl > 0.0);
     TEST_ASSERT_TRUE(d.cruise_mm_s >= start && d.cruise_mm_s >= end && d.cruise_mm_s <= 100.0);
-    for (unsigned i = 0; i < (unsigned)maths_round(cycles); i++) {
-        sum += diagram_feed(&d, (i + 0.5) * CYCLE_S) * CYCLE_S;
+    for (unsigned i = 0; i < (unsigned)takt_maths_round(cycles); i++) {
+        sum += takt_diagram_feed(&d, (i + 0.5) * CYCLE_S) * CYCLE_S;
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * length, length, diagram_way(&d, diagram_time(&d)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * length, length, takt_diagram_way(&d, takt_diagram_time(&d)));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * length, length, sum);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.kl * start, diagram_feed(&d, 0.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.kl * end, diagram_feed(&d, diagram_time(&d)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.kl * start, takt_diagram_feed(&d, 0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.kl * end, takt_diagram_feed(&d, takt_diagram_time(&d)));
 }
 
 static void test_a_diagram_lasts_whole_cycles_and_ends_at_the_end(void)
@@ -85,20 +85,20 @@ static void test_kl_stretches_a_part_of_a_cycle_to_a_whole_one(void)
     struct diagram d;
 
     l.length_mm = 0.25;
-    diagram_set(&d, &l, 100.0, 100.0, CYCLE_S);
+    takt_diagram_set(&d, &l, 100.0, 100.0, CYCLE_S);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.5 / 3.0, d.kl);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 250.0 / 3.0, diagram_feed(&d, 1.5e-3));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 250.0 / 3.0, takt_diagram_feed(&d, 1.5e-3));
 }
 
 static void test_a_block_that_is_too_short_for_its_feed_has_no_even_part(void)
 {
     struct diagram d;
 
-    diagram_set(&d, &limits, 0.0, 0.0, CYCLE_S);
+    takt_diagram_set(&d, &limits, 0.0, 0.0, CYCLE_S);
     TEST_ASSERT_TRUE(d.cruise_mm_s < 100.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.up_s, d.down_s);
-    TEST_ASSERT_TRUE(diagram_brakes(&d, d.up_s + d.even_s + 0.5 * CYCLE_S));
-    TEST_ASSERT_FALSE(diagram_brakes(&d, d.up_s));
+    TEST_ASSERT_TRUE(takt_diagram_brakes(&d, d.up_s + d.even_s + 0.5 * CYCLE_S));
+    TEST_ASSERT_FALSE(takt_diagram_brakes(&d, d.up_s));
 }
 
 /* (v/a + a/j) v/2 = L */
@@ -107,17 +107,17 @@ static void test_reach_is_the_feed_whose_ramp_is_as_long_as_the_block(void)
     struct diagram_limits l = limits;
 
     l.length_mm = 5.0;
-    const double v = diagram_reach(&l, 0.0);
+    const double v = takt_diagram_reach(&l, 0.0);
 
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5.0, 0.5 * v * (v / 1000.0 + 0.02));
-    TEST_ASSERT_TRUE(diagram_reach(&l, 95.0) == 100.0);
+    TEST_ASSERT_TRUE(takt_diagram_reach(&l, 95.0) == 100.0);
 }
 
 static void test_the_threshold_cuts_and_nothing_else(void)
 {
-    TEST_ASSERT_TRUE(limiter_axis(LIMITER_THRESHOLD, 99.9, 100.0, 5) == 1.0);
-    TEST_ASSERT_EQUAL_DOUBLE(100.0 / 120.0, limiter_axis(LIMITER_THRESHOLD, 120.0, 100.0, 5));
-    TEST_ASSERT_TRUE(limiter_axis(LIMITER_CEILING, 120.0, 100.0, 5) == 1.0);
+    TEST_ASSERT_TRUE(takt_limiter_axis(LIMITER_THRESHOLD, 99.9, 100.0, 5) == 1.0);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0 / 120.0, takt_limiter_axis(LIMITER_THRESHOLD, 120.0, 100.0, 5));
+    TEST_ASSERT_TRUE(takt_limiter_axis(LIMITER_CEILING, 120.0, 100.0, 5) == 1.0);
 }
 
 /* What comes out, F K: with slope 1 below the band and 0 above it, both of them without a bend. */
@@ -132,17 +132,17 @@ static void check_bends(double band, uint8_t band_percent)
         for (int k = 0; k < 5; k++) {
             const double f = ends[i] + (k - 2) * h;
 
-            out[k] = f * limiter_axis(LIMITER_SMOOTH, f, 100.0, band_percent);
+            out[k] = f * takt_limiter_axis(LIMITER_SMOOTH, f, 100.0, band_percent);
         }
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, i == 0 ? 1.0 : 0.0, (out[3] - out[1]) / (2.0 * h));
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, (out[3] - 2.0 * out[2] + out[1]) / (h * h) * band);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100.0 - band,
-                              (100.0 - band) *
-                                  limiter_axis(LIMITER_SMOOTH, 100.0 - band, 100.0, band_percent));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100.0,
-                              (100.0 + band) *
-                                  limiter_axis(LIMITER_SMOOTH, 100.0 + band, 100.0, band_percent));
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-9, 100.0 - band,
+        (100.0 - band) * takt_limiter_axis(LIMITER_SMOOTH, 100.0 - band, 100.0, band_percent));
+    TEST_ASSERT_DOUBLE_WITHIN(
+        1e-9, 100.0,
+        (100.0 + band) * takt_limiter_axis(LIMITER_SMOOTH, 100.0 + band, 100.0, band_percent));
 }
 
 static void test_the_smooth_form_bends_twice_without_a_corner(void)
@@ -157,9 +157,9 @@ static void test_the_smooth_form_bends_twice_without_a_corner(void)
 static void test_at_the_limit_the_smooth_form_takes_three_sixteenths_of_its_band(void)
 {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 - 0.05 * 3.0 / 16.0,
-                              limiter_axis(LIMITER_SMOOTH, 100.0, 100.0, 5));
+                              takt_limiter_axis(LIMITER_SMOOTH, 100.0, 100.0, 5));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 - 0.40 * 3.0 / 16.0,
-                              limiter_axis(LIMITER_SMOOTH, 3.0, 3.0, 40));
+                              takt_limiter_axis(LIMITER_SMOOTH, 3.0, 3.0, 40));
 }
 
 static void test_a_band_without_width_is_a_threshold(void)
@@ -167,8 +167,8 @@ static void test_a_band_without_width_is_a_threshold(void)
     for (unsigned k = 1; k < 400; k++) {
         const double f = 0.5 * (double)k;
 
-        TEST_ASSERT_TRUE(limiter_axis(LIMITER_SMOOTH, f, 100.0, 0) ==
-                         limiter_axis(LIMITER_THRESHOLD, f, 100.0, 0));
+        TEST_ASSERT_TRUE(takt_limiter_axis(LIMITER_SMOOTH, f, 100.0, 0) ==
+                         takt_limiter_axis(LIMITER_THRESHOLD, f, 100.0, 0));
     }
 }
 
@@ -180,9 +180,10 @@ static void test_the_least_factor_of_the_axes_counts(void)
     const uint8_t narrow[AXIS_COUNT] = {0}, wide_x[AXIS_COUNT] = {99, 0};
 
     TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0,
-                             limiter_factor(LIMITER_THRESHOLD, &velocity, most, narrow));
-    TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0, limiter_factor(LIMITER_SMOOTH, &velocity, most, narrow));
-    TEST_ASSERT_TRUE(limiter_factor(LIMITER_SMOOTH, &velocity, most, wide_x) < 50.0 / 60.0);
+                             takt_limiter_factor(LIMITER_THRESHOLD, &velocity, most, narrow));
+    TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0,
+                             takt_limiter_factor(LIMITER_SMOOTH, &velocity, most, narrow));
+    TEST_ASSERT_TRUE(takt_limiter_factor(LIMITER_SMOOTH, &velocity, most, wide_x) < 50.0 / 60.0);
 }
 
 int main(void)

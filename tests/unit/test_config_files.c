@@ -58,7 +58,7 @@ static void test_a_tool_table_is_read_as_linuxcnc_writes_it(void)
         "z-1.5\r\n");
     TEST_ASSERT_TRUE(tool_file_read(&file, path));
     TEST_ASSERT_EQUAL_UINT(2, file.table.count);
-    tool = tool_table_find(&file.table, 1);
+    tool = takt_tool_table_find(&file.table, 1);
     TEST_ASSERT_NOT_NULL(tool);
     TEST_ASSERT_EQUAL_DOUBLE(50.8, tool->offset.at[AXIS_Z]);
     TEST_ASSERT_EQUAL_DOUBLE(6.35, tool->diameter_mm);
@@ -66,7 +66,7 @@ static void test_a_tool_table_is_read_as_linuxcnc_writes_it(void)
     TEST_ASSERT_EQUAL_DOUBLE(-20.5, tool->back_angle_deg);
     TEST_ASSERT_EQUAL_UINT(3, tool->orientation);
     TEST_ASSERT_EQUAL_DOUBLE(3.14159265358979323846 / 2, tool->offset.at[AXIS_A]);
-    TEST_ASSERT_EQUAL_DOUBLE(-1.5, tool_table_find(&file.table, 20)->offset.at[AXIS_Z]);
+    TEST_ASSERT_EQUAL_DOUBLE(-1.5, takt_tool_table_find(&file.table, 20)->offset.at[AXIS_Z]);
     tool_file_close(&file);
 }
 
@@ -94,7 +94,7 @@ static void test_many_tools_are_kept(void)
     (void)fclose(stream);
     TEST_ASSERT_TRUE(tool_file_read(&file, path));
     TEST_ASSERT_EQUAL_UINT(1000, file.table.count);
-    TEST_ASSERT_EQUAL_DOUBLE(1998, tool_table_find(&file.table, 999)->offset.at[AXIS_Z]);
+    TEST_ASSERT_EQUAL_DOUBLE(1998, takt_tool_table_find(&file.table, 999)->offset.at[AXIS_Z]);
     tool_file_close(&file);
 }
 
@@ -105,16 +105,16 @@ static void test_parameters_are_read_and_written_again(void)
 
     put("31\t2.5\n5161   0.1\n5220 1\n100 0\n");
     TEST_ASSERT_TRUE(parameter_file_read(&file, path));
-    TEST_ASSERT_EQUAL_DOUBLE(2.5, parameters_get(&file.values, 31));
-    TEST_ASSERT_TRUE(parameters_set(&file.values, 5221, -1.25));
-    TEST_ASSERT_TRUE(parameters_set(&file.values, 200, 9)); /* neither listed nor persistent */
+    TEST_ASSERT_EQUAL_DOUBLE(2.5, takt_parameters_get(&file.values, 31));
+    TEST_ASSERT_TRUE(takt_parameters_set(&file.values, 5221, -1.25));
+    TEST_ASSERT_TRUE(takt_parameters_set(&file.values, 200, 9)); /* neither listed nor persistent */
     stream = fopen(path, "wb");
     TEST_ASSERT_NOT_NULL(stream);
     parameter_file_write(stream, &file);
     (void)fclose(stream);
     TEST_ASSERT_EQUAL_STRING("31\t2.5\n100\t0\n5161\t0.1\n5220\t1\n5221\t-1.25\n", get());
     TEST_ASSERT_TRUE(parameter_file_read(&file, path));
-    TEST_ASSERT_TRUE(parameters_get(&file.values, 5161) == 0.1);
+    TEST_ASSERT_TRUE(takt_parameters_get(&file.values, 5161) == 0.1);
 }
 
 static void test_a_parameter_file_with_a_mistake_is_refused(void)

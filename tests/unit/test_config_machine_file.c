@@ -59,7 +59,7 @@ static void expect_same_values(void)
                 TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, key->name);
         }
     }
-    TEST_ASSERT_EQUAL_UINT(machine_axes(&setup.machine), machine_axes(&again.machine));
+    TEST_ASSERT_EQUAL_UINT(takt_machine_axes(&setup.machine), takt_machine_axes(&again.machine));
 }
 
 static void test_a_machine_that_is_written_reads_as_the_same_machine(void)
@@ -86,9 +86,9 @@ static void test_the_default_machine_is_that_of_the_controller(void)
 {
     struct machine machine;
 
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     TEST_ASSERT_NULL(machine_setup_check(&setup));
-    TEST_ASSERT_EQUAL_UINT(7, machine_axes(&setup.machine));
+    TEST_ASSERT_EQUAL_UINT(7, takt_machine_axes(&setup.machine));
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         TEST_ASSERT_EQUAL_MEMORY(&machine.axis[i], &setup.machine.axis[i], sizeof machine.axis[i]);
 }
@@ -96,14 +96,14 @@ static void test_the_default_machine_is_that_of_the_controller(void)
 static void test_a_file_that_names_axes_has_no_others(void)
 {
     TEST_ASSERT_TRUE(read_text("[axis Y]\n[axis C]\n"));
-    TEST_ASSERT_EQUAL_UINT(1u << AXIS_Y | 1u << AXIS_C, machine_axes(&setup.machine));
+    TEST_ASSERT_EQUAL_UINT(1u << AXIS_Y | 1u << AXIS_C, takt_machine_axes(&setup.machine));
     TEST_ASSERT_EQUAL_DOUBLE(100, setup.machine.axis[AXIS_Y].max_velocity_mm_s);
 }
 
 static void test_a_file_that_names_no_axis_keeps_the_default_ones(void)
 {
     TEST_ASSERT_TRUE(read_text("[spindle]\nmax_rpm = 6000\n"));
-    TEST_ASSERT_EQUAL_UINT(7, machine_axes(&setup.machine));
+    TEST_ASSERT_EQUAL_UINT(7, takt_machine_axes(&setup.machine));
     TEST_ASSERT_EQUAL_DOUBLE(6000, setup.machine.spindle_max_rpm);
 }
 
@@ -197,7 +197,7 @@ static void test_the_bits_of_an_io_node_are_read_by_their_names(void)
 
     TEST_ASSERT_NULL(check_io("[io 1]\nnode = 20\noutputs = flood - P31 !ccw\n"
                               "inputs = stop, !limit, P0\n"));
-    TEST_ASSERT_EQUAL_UINT(1, machine_io_count(&setup.machine));
+    TEST_ASSERT_EQUAL_UINT(1, takt_machine_io_count(&setup.machine));
     TEST_ASSERT_EQUAL_UINT8_ARRAY(outputs, setup.machine.io[0].output, IO_BITS_MAX);
     TEST_ASSERT_EQUAL_UINT8_ARRAY(inputs, setup.machine.io[0].input, IO_BITS_MAX);
 }

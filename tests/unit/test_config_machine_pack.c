@@ -41,8 +41,8 @@ static const struct settings_field *field_of(const struct machine_key *key)
     const size_t at =
         of_axis ? key->offset : offset_of(key) - offsetof(struct machine_setup, machine);
 
-    for (size_t i = 0; i < settings_fields_count; i++) {
-        const struct settings_field *field = &settings_fields[i];
+    for (size_t i = 0; i < takt_settings_fields_count; i++) {
+        const struct settings_field *field = &takt_settings_fields[i];
         const size_t size = field->type == SETTINGS_DOUBLE  ? 8 * (size_t)field->count
                             : field->type == SETTINGS_BYTES ? field->count
                                                             : 1;
@@ -79,7 +79,7 @@ static void check_value(const struct machine_key *key, unsigned axis, double num
 
     (void)snprintf(text, sizeof text, "%.17g", number);
     TEST_ASSERT_TRUE_MESSAGE(machine_key_set(&setup, place, key, text, &wrong), wrong.text);
-    TEST_ASSERT_TRUE_MESSAGE(settings_field_check(field, base, &value), key->name);
+    TEST_ASSERT_TRUE_MESSAGE(takt_settings_field_check(field, base, &value), key->name);
 }
 
 static void check_range(const struct machine_key *key, unsigned axis)
@@ -121,7 +121,7 @@ static void test_every_word_a_file_may_have_may_be_stored(void)
 
         TEST_ASSERT_NOT_NULL(key);
         TEST_ASSERT_TRUE(machine_key_set(&setup, place, key, words[i].word, &wrong));
-        TEST_ASSERT_TRUE_MESSAGE(settings_field_check(field_of(key), &setup.machine, &value),
+        TEST_ASSERT_TRUE_MESSAGE(takt_settings_field_check(field_of(key), &setup.machine, &value),
                                  words[i].key);
     }
 }

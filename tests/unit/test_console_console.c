@@ -51,7 +51,7 @@ static void test_streamed_text_gives_the_setpoints_of_the_same_text_in_a_file(vo
     settle();
     TEST_ASSERT_EQUAL_UINT(22, count_of("ok\r\n"));
     TEST_ASSERT_EQUAL_UINT64(expected, service.digest);
-    TEST_ASSERT_TRUE(service_get_outputs(&service).spindle_speed_rpm == 0.0);
+    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 0.0);
 }
 
 /* One line, and the next when it is answered. */
@@ -78,7 +78,7 @@ static void test_a_sender_that_stalls_finds_the_axes_at_rest_and_they_go_on(void
     give("G64 P0.05 F6000\nG1 X10\nG1 X20 Y1\n");
     steps(1000);
     TEST_ASSERT_EQUAL_DOUBLE(20.0, place(AXIS_X));
-    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, takt_service_get_state(&service));
     give("X30 Y2\nX40 Y3\n"); /* the modes are those of before */
     settle();
     TEST_ASSERT_EQUAL_DOUBLE(40.0, place(AXIS_X));
@@ -213,7 +213,7 @@ static void test_a_jog_is_cancelled_at_once_and_when_its_sender_goes(void)
     TEST_ASSERT_TRUE(place(AXIS_X) < 30.0);
     ask("$J=X100 F3000", "ok");
     steps(300);
-    console_leave(&console);
+    takt_console_leave(&console);
     settle();
     TEST_ASSERT_TRUE(place(AXIS_X) < 60.0);
     expect_limits_kept();
@@ -246,11 +246,11 @@ static void test_the_spindle_stands_in_a_hold_and_turns_before_the_axes_go_on(vo
     give("!");
     steps(300);
     give("\x9e");
-    TEST_ASSERT_TRUE(service_get_outputs(&service).spindle_speed_rpm == 0.0);
+    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 0.0);
     world.spindle.at_speed = false;
     give("~");
     steps(50);
-    TEST_ASSERT_TRUE(service_get_outputs(&service).spindle_speed_rpm == 1000.0);
+    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 1000.0);
     expect_status("<Hold:0|");
     world.spindle.at_speed = true;
     steps(10);
@@ -324,7 +324,7 @@ static void claim_control(void)
 {
     const struct panel_order claim = {.count = 1, .item = {{REGISTER_WATCHDOG, 60000}}};
 
-    TEST_ASSERT_EQUAL_INT(PANEL_REFUSAL_NONE, panel_client_order(&other, &claim));
+    TEST_ASSERT_EQUAL_INT(PANEL_REFUSAL_NONE, takt_panel_client_order(&other, &claim));
 }
 
 static void test_while_another_panel_has_control_the_sender_may_only_hold(void)
@@ -342,7 +342,7 @@ static void test_while_another_panel_has_control_the_sender_may_only_hold(void)
     give("\x18");
     steps(10);
     expect("another panel has control");
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
 }
 
 static void test_an_emergency_stop_by_anyone_is_an_alarm(void)
@@ -352,7 +352,7 @@ static void test_an_emergency_stop_by_anyone_is_an_alarm(void)
     give("G1 X50 F3000\nX60\n");
     steps(300);
     forget();
-    TEST_ASSERT_EQUAL_INT(PANEL_REFUSAL_NONE, panel_client_order(&other, &stop));
+    TEST_ASSERT_EQUAL_INT(PANEL_REFUSAL_NONE, takt_panel_client_order(&other, &stop));
     steps(10);
     expect("ALARM:");
     ask("G0 X1", "error:9");
@@ -366,7 +366,7 @@ static void test_a_program_that_another_gives_up_does_not_go_on_by_itself(void)
 
     give("G1 X50 F3000\nX60\nX70\n");
     steps(300);
-    TEST_ASSERT_EQUAL_INT(PANEL_REFUSAL_NONE, panel_client_order(&other, &give_up));
+    TEST_ASSERT_EQUAL_INT(PANEL_REFUSAL_NONE, takt_panel_client_order(&other, &give_up));
     steps(500);
     ask("X80", "error:9");
     ask("$X", "ok");

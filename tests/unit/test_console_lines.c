@@ -13,7 +13,7 @@ static char text[LINES_LENGTH_MAX + 1];
 
 void setUp(void)
 {
-    lines_init(&lines, ring, SIZE);
+    takt_lines_init(&lines, ring, SIZE);
 }
 
 void tearDown(void)
@@ -23,7 +23,7 @@ void tearDown(void)
 static void put(const char *bytes)
 {
     for (; *bytes != '\0'; bytes++)
-        TEST_ASSERT_TRUE(lines_put(&lines, (uint8_t)*bytes));
+        TEST_ASSERT_TRUE(takt_lines_put(&lines, (uint8_t)*bytes));
 }
 
 static const char *read_one(void)
@@ -42,13 +42,13 @@ static void test_a_line_is_read_when_it_is_released_and_answered_when_the_next_i
     uint8_t answer;
 
     put("G0\nG1\n");
-    lines_open(&lines, &source);
+    takt_lines_open(&lines, &source);
     TEST_ASSERT_EQUAL_STRING("later", read_one());
-    lines_release(&lines);
+    takt_lines_release(&lines);
     TEST_ASSERT_EQUAL_STRING("G0\n", read_one());
-    TEST_ASSERT_FALSE(lines_collect(&lines, text, &answer));
+    TEST_ASSERT_FALSE(takt_lines_collect(&lines, text, &answer));
     TEST_ASSERT_EQUAL_STRING("later", read_one());
-    TEST_ASSERT_TRUE(lines_collect(&lines, text, &answer));
+    TEST_ASSERT_TRUE(takt_lines_collect(&lines, text, &answer));
     TEST_ASSERT_EQUAL_STRING("G0", text);
     TEST_ASSERT_EQUAL_UINT8(0, answer);
 }
@@ -59,23 +59,23 @@ static void test_the_ring_goes_round_and_lines_keep_their_order_and_answers(void
     struct diagnostic told;
     uint8_t answer;
 
-    lines_open(&lines, &source);
+    takt_lines_open(&lines, &source);
     for (unsigned i = 0; i < 50; i++) {
         char line[] = "N00 X1\n";
 
         line[1] = (char)('0' + i / 10);
         line[2] = (char)('0' + i % 10);
         put(line);
-        lines_release(&lines);
+        takt_lines_release(&lines);
         TEST_ASSERT_EQUAL_STRING(line, read_one());
         if (i % 3 == 0)
-            lines_refuse(&lines, 20, &why);
+            takt_lines_refuse(&lines, 20, &why);
         (void)read_one();
-        TEST_ASSERT_TRUE(lines_collect(&lines, text, &answer));
+        TEST_ASSERT_TRUE(takt_lines_collect(&lines, text, &answer));
         TEST_ASSERT_EQUAL_UINT8(i % 3 == 0 ? 20 : 0, answer);
-        lines_take_why(&lines, &told);
+        takt_lines_take_why(&lines, &told);
         TEST_ASSERT_EQUAL_INT(i % 3 == 0 ? TAKT_ERROR_WORD_UNKNOWN : TAKT_OK, told.code);
-        TEST_ASSERT_EQUAL_UINT32(lines_capacity(&lines), lines_room(&lines));
+        TEST_ASSERT_EQUAL_UINT32(takt_lines_capacity(&lines), takt_lines_room(&lines));
     }
 }
 
@@ -84,34 +84,34 @@ static void test_what_the_console_has_answered_is_passed_over(void)
     uint8_t answer;
 
     put("G0\n$$\nG1\n");
-    lines_open(&lines, &source);
-    lines_release(&lines);
+    takt_lines_open(&lines, &source);
+    takt_lines_release(&lines);
     TEST_ASSERT_EQUAL_STRING("G0\n", read_one());
-    TEST_ASSERT_EQUAL_UINT8(LINES_NEW, lines_look(&lines, text));
+    TEST_ASSERT_EQUAL_UINT8(LINES_NEW, takt_lines_look(&lines, text));
     TEST_ASSERT_EQUAL_STRING("$$", text);
-    lines_skip(&lines);
-    lines_release(&lines);
+    takt_lines_skip(&lines);
+    takt_lines_release(&lines);
     TEST_ASSERT_EQUAL_STRING("G1\n", read_one());
-    lines_end(&lines, 9, TAKT_ERROR_ENDED);
-    TEST_ASSERT_TRUE(lines_collect(&lines, text, &answer));
+    takt_lines_end(&lines, 9, TAKT_ERROR_ENDED);
+    TEST_ASSERT_TRUE(takt_lines_collect(&lines, text, &answer));
     TEST_ASSERT_EQUAL_UINT8(0, answer);
-    TEST_ASSERT_TRUE(lines_collect(&lines, text, &answer));
+    TEST_ASSERT_TRUE(takt_lines_collect(&lines, text, &answer));
     TEST_ASSERT_EQUAL_STRING("G1", text);
     TEST_ASSERT_EQUAL_UINT8(9, answer);
-    TEST_ASSERT_FALSE(lines_collect(&lines, text, &answer));
+    TEST_ASSERT_FALSE(takt_lines_collect(&lines, text, &answer));
 }
 
 static void test_lines_that_the_program_has_not_read_come_back(void)
 {
     put("M2\nG0\n");
-    lines_open(&lines, &source);
-    lines_release(&lines);
-    lines_release(&lines);
+    takt_lines_open(&lines, &source);
+    takt_lines_release(&lines);
+    takt_lines_release(&lines);
     TEST_ASSERT_EQUAL_STRING("M2\n", read_one());
-    lines_end(&lines, 0, TAKT_OK);
-    TEST_ASSERT_EQUAL_UINT8(0, lines_look(&lines, text));
-    lines_take_back(&lines);
-    TEST_ASSERT_EQUAL_UINT8(LINES_NEW, lines_look(&lines, text));
+    takt_lines_end(&lines, 0, TAKT_OK);
+    TEST_ASSERT_EQUAL_UINT8(0, takt_lines_look(&lines, text));
+    takt_lines_take_back(&lines);
+    TEST_ASSERT_EQUAL_UINT8(LINES_NEW, takt_lines_look(&lines, text));
     TEST_ASSERT_EQUAL_STRING("G0", text);
 }
 
@@ -119,12 +119,12 @@ static void test_there_is_always_room_for_the_end_of_a_line(void)
 {
     unsigned taken = 0;
 
-    while (lines_put(&lines, 'X'))
+    while (takt_lines_put(&lines, 'X'))
         taken++;
     TEST_ASSERT_TRUE(taken >= SIZE - 4);
-    TEST_ASSERT_TRUE(lines_put(&lines, '\n'));
-    TEST_ASSERT_EQUAL_UINT8(LINES_LONG, lines_look(&lines, text));
-    TEST_ASSERT_TRUE(lines_room(&lines) > 0);
+    TEST_ASSERT_TRUE(takt_lines_put(&lines, '\n'));
+    TEST_ASSERT_EQUAL_UINT8(LINES_LONG, takt_lines_look(&lines, text));
+    TEST_ASSERT_TRUE(takt_lines_room(&lines) > 0);
 }
 
 int main(void)

@@ -16,8 +16,8 @@ static const struct point start = {{1, 2, 3}};
 
 void setUp(void)
 {
-    machine_set_default(&machine);
-    approach_init(&approach, &start);
+    takt_machine_set_default(&machine);
+    takt_approach_init(&approach, &start);
     actual = start;
 }
 
@@ -41,7 +41,8 @@ static struct peaks run(void)
             x[i][k] = actual.at[i];
         }
     }
-    while (!approach_cycle(&approach, &machine, &actual, &setpoint) && peaks.cycles < CYCLES_MAX) {
+    while (!takt_approach_cycle(&approach, &machine, &actual, &setpoint) &&
+           peaks.cycles < CYCLES_MAX) {
         peaks.cycles++;
         for (unsigned i = 0; i < 3; i++) {
             x[i][0] = x[i][1], x[i][1] = x[i][2], x[i][2] = x[i][3], x[i][3] = setpoint.at[i];
@@ -110,7 +111,7 @@ static void test_axes_move_in_the_order_they_are_homed_in_and_the_others_last(vo
     machine.axis[AXIS_Z].home_order = 1;
     machine.axis[AXIS_X].home_order = 7;
     actual = (struct point){{2, 3, 4}};
-    while (!approach_cycle(&approach, &machine, &actual, &setpoint) && cycle++ < CYCLES_MAX) {
+    while (!takt_approach_cycle(&approach, &machine, &actual, &setpoint) && cycle++ < CYCLES_MAX) {
         for (unsigned i = 0; i < 3; i++) {
             if (moved[i] == 0 && setpoint.at[i] != actual.at[i]) {
                 moved[i] = cycle;

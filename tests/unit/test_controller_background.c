@@ -32,14 +32,14 @@ static void start(const char *program)
         .machine = &machine, .reader = &reader, .parameters = &parameters};
 
     virtual_drives_set_default(&virtual, DRIVES);
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.look_ahead_blocks = LOOK_AHEAD;
     TEST_ASSERT_TRUE(bus_init(&bus, machine.can_bitrate));
     config.can = can_single(bus_attach(&bus, NULL));
     virtual_drives_init(&drives, &bus, &virtual);
-    parameters_clear(&parameters);
-    source_open_text(&config.source, &text, program, strlen(program));
-    controller_init(&controller, &config);
+    takt_parameters_clear(&parameters);
+    takt_source_open_text(&config.source, &text, program, strlen(program));
+    takt_controller_init(&controller, &config);
     now_ns = 0;
 }
 
@@ -47,7 +47,7 @@ static void cycle(void)
 {
     const struct inputs inputs = inputs_idle();
 
-    controller_cycle(&controller, &inputs);
+    takt_controller_cycle(&controller, &inputs);
     now_ns += CYCLE_NS;
     bus_run_until(&bus, now_ns);
     virtual_drives_step(&drives, CYCLE_NS);
@@ -60,10 +60,10 @@ static enum controller_state run(bool background_goes_on)
 
     for (unsigned i = 0; i < CYCLES_MAX && state < CONTROLLER_COMPLETED; i++) {
         if (background_goes_on || state == CONTROLLER_STARTING) {
-            controller_background(&controller);
+            takt_controller_background(&controller);
         }
         cycle();
-        state = controller_get_state(&controller);
+        state = takt_controller_get_state(&controller);
     }
     return state;
 }
@@ -94,42 +94,43 @@ static void test_a_background_that_stops_is_waited_for_at_rest_and_counted(void)
 {
     start(many_moves);
     TEST_ASSERT_EQUAL_INT(CONTROLLER_RUNNING, run(false));
-    TEST_ASSERT_TRUE(controller_get_late(&controller) > 0);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, controller_get_record(&controller)->feed_mm_s);
+    TEST_ASSERT_TRUE(takt_controller_get_late(&controller) > 0);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_controller_get_record(&controller)->feed_mm_s);
     TEST_ASSERT_TRUE(controller.record.set.at[AXIS_X] < 55.0);
     TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.record.set.at[AXIS_X]);
 }
 
-/* The lead point is made to wait at the first stop in every cycle: nothing that the controller knows of explains it. */
+/* The trapezoidal reference is made to wait at the first stop in every cycle: nothing that the controller knows of explains it. */
 static void test_a_path_that_is_not_gone_on_along_is_a_fault_with_its_line(void)
 {
     start("G21 F3000\nG1 X1\nM2\n");
-    for (unsigned i = 0; i < CYCLES_MAX && controller_get_state(&controller) < CONTROLLER_COMPLETED;
-         i++) {
-        controller.motion.lead.abrupt = true;
-        controller_background(&controller);
+    for (unsigned i = 0;
+         i < CYCLES_MAX && takt_controller_get_state(&controller) < CONTROLLER_COMPLETED; i++) {
+        controller.motion.reference.abrupt = true;
+        takt_controller_background(&controller);
         cycle();
     }
-    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, controller_get_state(&controller));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STALLED, controller_get_fault(&controller)->code);
-    TEST_ASSERT_EQUAL_UINT32(2, controller_get_fault(&controller)->line);
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, takt_controller_get_state(&controller));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STALLED, takt_controller_get_fault(&controller)->code);
+    TEST_ASSERT_EQUAL_UINT32(2, takt_controller_get_fault(&controller)->line);
 }
 
 static void test_an_error_of_the_program_is_the_fault_when_its_moves_are_done(void)
 {
     start("G21 F3000 G1 X1\nX2\nX3 ?\nX4\n");
     TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, run(true));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_CHARACTER_UNKNOWN, controller_get_fault(&controller)->code);
-    TEST_ASSERT_EQUAL_UINT32(3, controller_get_fault(&controller)->line);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_CHARACTER_UNKNOWN,
+                          takt_controller_get_fault(&controller)->code);
+    TEST_ASSERT_EQUAL_UINT32(3, takt_controller_get_fault(&controller)->line);
 }
 
 static void expect_fault(const char *program, enum takt_error code, uint32_t line)
 {
     start(program);
     TEST_ASSERT_EQUAL_INT_MESSAGE(CONTROLLER_FAULTED, run(true), program);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(code, controller_get_fault(&controller)->code, program);
-    TEST_ASSERT_EQUAL_UINT32_MESSAGE(line, controller_get_fault(&controller)->line, program);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(code, takt_controller_get_fault(&controller)->code, program);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(line, takt_controller_get_fault(&controller)->line, program);
 }
 
 static void test_probing_that_must_make_contact_fails_when_nothing_answers(void)
@@ -173,7 +174,7 @@ static void test_a_spindle_that_does_not_reach_its_speed_is_a_fault(void)
     start("M3 S1000\nG0 X1\nM2\n");
     controller.spindle.at_speed_s = 0.1;
     TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, run(true));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SPINDLE_SLOW, controller_get_fault(&controller)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SPINDLE_SLOW, takt_controller_get_fault(&controller)->code);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, controller.record.set.at[AXIS_X]);
 }
 

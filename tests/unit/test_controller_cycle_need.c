@@ -11,7 +11,7 @@ static struct machine machine;
 
 void setUp(void)
 {
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
 }
 
 void tearDown(void)
@@ -24,10 +24,10 @@ static void test_the_built_in_mill_needs_354_hz_and_has_1000(void)
     struct cycle_need need;
 
     /* sqrt(a / (8 d)) with a = 1000 mm/s2, d = 1 um: 353.6, at R = a^3 / J^2 = 0.4 mm */
-    controller_cycle_need(&machine, &need, NULL);
+    takt_controller_cycle_need(&machine, &need, NULL);
     TEST_ASSERT_DOUBLE_WITHIN(0.3, 353.6, need.frequency_hz);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.4, need.radius_mm);
-    TEST_ASSERT_TRUE(controller_cycle_is_enough(&machine, &warning));
+    TEST_ASSERT_TRUE(takt_controller_cycle_is_enough(&machine, &warning));
     TEST_ASSERT_EQUAL_INT(TAKT_OK, warning.code);
 }
 
@@ -37,9 +37,9 @@ static void test_a_cycle_that_is_too_slow_is_told_with_both_frequencies(void)
     char text[DIAGNOSTIC_TEXT_MAX];
 
     machine.cycle_us = 5000;
-    TEST_ASSERT_FALSE(controller_cycle_is_enough(&machine, &warning));
+    TEST_ASSERT_FALSE(takt_controller_cycle_is_enough(&machine, &warning));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_CYCLE_SLOW, warning.code);
-    (void)diagnostic_text(&warning, text);
+    (void)takt_diagnostic_text(&warning, text);
     TEST_ASSERT_NOT_NULL(strstr(text, "200 Hz is below the 353.8 Hz"));
 }
 
@@ -49,12 +49,12 @@ static void test_the_plane_that_needs_most_counts(void)
     struct cycle_need need;
 
     machine.axis[AXIS_X].max_acceleration_mm_s2 = 250.0; /* both planes with X need less */
-    controller_cycle_need(&machine, &need, &limits);
+    takt_controller_cycle_need(&machine, &need, &limits);
     TEST_ASSERT_DOUBLE_WITHIN(0.3, 353.6, need.frequency_hz);
     TEST_ASSERT_EQUAL_DOUBLE(1000.0, limits.acceleration_mm_s2);
     machine.axis[AXIS_Z].max_acceleration_mm_s2 =
         500.0; /* now Y and Z have 500, X and the others 250 */
-    controller_cycle_need(&machine, &need, &limits);
+    takt_controller_cycle_need(&machine, &need, &limits);
     /* sqrt(500 / 0.008) = 250, and a little more, since R = 0.05 mm is not far above the tolerance */
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 251.3, need.frequency_hz);
     TEST_ASSERT_EQUAL_DOUBLE(500.0, limits.acceleration_mm_s2);
@@ -67,9 +67,9 @@ static void test_a_machine_without_a_plane_needs_nothing(void)
 
     machine.axis[AXIS_X].present = machine.axis[AXIS_Z].present = false;
     machine.cycle_us = 10000;
-    controller_cycle_need(&machine, &need, NULL);
+    takt_controller_cycle_need(&machine, &need, NULL);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, need.frequency_hz);
-    TEST_ASSERT_TRUE(controller_cycle_is_enough(&machine, &warning));
+    TEST_ASSERT_TRUE(takt_controller_cycle_is_enough(&machine, &warning));
 }
 
 int main(void)

@@ -9,7 +9,7 @@ static struct drives_config config;
 
 void setUp(void)
 {
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.gantry[0] = (struct machine_gantry){
         .axis = AXIS_Y, .drive_node = 9, .home_offset_mm = 2.5, .skew_max_mm = 0.5};
     machine.axis[AXIS_Y].home_offset_mm = 2;
@@ -22,7 +22,7 @@ void tearDown(void)
 
 static void test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first(void)
 {
-    controller_drives_config(&machine, NULL, &config);
+    takt_controller_drives_config(&machine, NULL, &config);
     TEST_ASSERT_EQUAL_UINT(4, config.count);
     TEST_ASSERT_EQUAL_INT(AXIS_Y, config.axis[3].axis);
     TEST_ASSERT_EQUAL_UINT(9, config.axis[3].node);
@@ -33,7 +33,7 @@ static void test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first(voi
     TEST_ASSERT_EQUAL_UINT(1, config.gantry_count);
     TEST_ASSERT_EQUAL_DOUBLE(0.5, config.gantry[0].skew_max_mm);
     machine.gantry[0].axis = AXIS_COUNT;
-    controller_drives_config(&machine, NULL, &config);
+    takt_controller_drives_config(&machine, NULL, &config);
     TEST_ASSERT_EQUAL_UINT(3, config.count);
     TEST_ASSERT_EQUAL_UINT(0, config.gantry_count);
 }
@@ -41,7 +41,7 @@ static void test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first(voi
 static int8_t second_method(int8_t method)
 {
     machine.axis[AXIS_Y].home_method = method;
-    controller_drives_config(&machine, NULL, &config);
+    takt_controller_drives_config(&machine, NULL, &config);
     TEST_ASSERT_EQUAL_UINT(method, config.axis[AXIS_Y].homing.method);
     return config.axis[3].homing.method;
 }

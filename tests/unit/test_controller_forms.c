@@ -8,14 +8,14 @@
 static struct machine machine;
 
 /* In the place of the room's own. */
-bool classic_is_there(void)
+bool takt_classic_is_there(void)
 {
     return false;
 }
 
 void setUp(void)
 {
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
 }
 
 void tearDown(void)
@@ -27,9 +27,9 @@ static void expect(const char *text)
     struct diagnostic wrong;
     char said[DIAGNOSTIC_TEXT_MAX];
 
-    TEST_ASSERT_FALSE(machine_check(&machine, &wrong));
+    TEST_ASSERT_FALSE(takt_machine_check(&machine, &wrong));
     TEST_ASSERT_EQUAL(TAKT_ERROR_MACHINE_FORM, wrong.code);
-    (void)diagnostic_text(&wrong, said);
+    (void)takt_diagnostic_text(&wrong, said);
     TEST_ASSERT_EQUAL_STRING(text, said);
 }
 
@@ -37,17 +37,17 @@ static void test_the_default_machine_can_work(void)
 {
     struct diagnostic wrong;
 
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
 }
 
 static void test_an_interpolator_a_limiter_and_a_landing_for_comparison_are_refused(void)
 {
     machine.interpolator = INTERPOLATOR_ROTATE;
     expect("'interpolator' of this machine is for comparison: this image has only its default");
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.limiter = LIMITER_SMOOTH;
     expect("'limiter' of this machine is for comparison: this image has only its default");
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.landing = LANDING_SCALE;
     expect("'landing' of this machine is for comparison: this image has only its default");
 }

@@ -24,7 +24,7 @@ void tearDown(void)
 
 static void apply(const struct move *m)
 {
-    outputs_apply(&outputs, &surface, m);
+    takt_outputs_apply(&outputs, &surface, m);
 }
 
 static void turn(enum spindle_direction direction, double speed_rpm)

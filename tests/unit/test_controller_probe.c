@@ -4,7 +4,7 @@
  */
 #include "controller/controller_probe.h"
 
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 
 #include "program_reader.h"
 
@@ -14,7 +14,7 @@
 #define LAG_MM 0.25
 
 static struct reader reader;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct controller_probe probe;
 static struct inputs inputs;
 static struct drives drives; /* none: there is no touch probe */
@@ -42,7 +42,7 @@ static void open_text(const char *text)
     reader_prepare(&reader);
     reader.config.waits = true;
     reader_text(&reader, text);
-    offset_open(&offset, &reader.config);
+    takt_cutter_compensation_open(&offset, &reader.config);
 }
 
 /* Reads on to the next move that asks for something. */
@@ -50,9 +50,9 @@ static void read_question(void)
 {
     enum program_result result;
 
-    while ((result = offset_next(&offset, &reader.program, &executed, &reader.diagnostic)) ==
-           PROGRAM_MOVE) {
-        (void)controller_probe_ask(&probe, &executed, CYCLE_S, false);
+    while ((result = takt_cutter_compensation_next(&offset, &reader.program, &executed,
+                                                   &reader.diagnostic)) == PROGRAM_MOVE) {
+        (void)takt_controller_probe_ask(&probe, &executed, CYCLE_S, false);
         if (probe.state == PROBE_ASKED) {
             break;
         }
@@ -80,7 +80,7 @@ static void run_probing(void)
         setpoint.at[AXIS_X] += 1.0;
         const struct controller_place at = look();
 
-        if (controller_probe_watch(&probe, &executed, &inputs, &at)) {
+        if (takt_controller_probe_watch(&probe, &executed, &inputs, &at)) {
             end_mm = maths_min(end_mm, setpoint.at[AXIS_X] + BRAKING_MM);
         }
     }
@@ -91,16 +91,16 @@ static bool rest(void)
 {
     const struct controller_place at = look();
 
-    return controller_probe_rest(&probe, &inputs, &drives, &setpoint, &at);
+    return takt_controller_probe_rest(&probe, &inputs, &drives, &setpoint, &at);
 }
 
 static void answer_program(void)
 {
     struct program_answer answer;
 
-    TEST_ASSERT_TRUE(controller_probe_take(&probe, &answer, &error));
-    TEST_ASSERT_FALSE(controller_probe_take(&probe, &answer, &error));
-    offset_answer(&offset, &reader.program, &answer);
+    TEST_ASSERT_TRUE(takt_controller_probe_take(&probe, &answer, &error));
+    TEST_ASSERT_FALSE(takt_controller_probe_take(&probe, &answer, &error));
+    takt_cutter_compensation_answer(&offset, &reader.program, &answer);
 }
 
 static void probe_and_answer(void)
@@ -115,8 +115,8 @@ static void expect_rapid_to(double x)
 {
     struct move m;
 
-    TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE,
-                          offset_next(&offset, &reader.program, &m, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE, takt_cutter_compensation_next(&offset, &reader.program, &m,
+                                                                      &reader.diagnostic));
     TEST_ASSERT_EQUAL_INT(MOVE_RAPID, m.kind);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, x, m.end.at[AXIS_X]);
 }
@@ -212,7 +212,7 @@ static void test_contact_while_the_axes_catch_up_at_the_end_still_counts(void)
     read_question();
     run_probing();
     inputs.probe_contact = true;
-    TEST_ASSERT_TRUE(controller_probe_rest(
+    TEST_ASSERT_TRUE(takt_controller_probe_rest(
         &probe, &inputs, &drives, &setpoint,
         &(struct controller_place){.reported = setpoint, .actual = setpoint}));
     answer_program();
@@ -238,14 +238,14 @@ static void test_other_motions_do_not_ask_the_probe(void)
     executed.kind = MOVE_FEED;
     const struct controller_place at = look();
 
-    TEST_ASSERT_FALSE(controller_probe_watch(&probe, &executed, &inputs, &at));
+    TEST_ASSERT_FALSE(takt_controller_probe_watch(&probe, &executed, &inputs, &at));
 }
 
 static void expect_value(double value)
 {
     answer_program();
     TEST_ASSERT_EQUAL_INT(TAKT_OK, error.code);
-    TEST_ASSERT_TRUE(parameters_get(&reader.parameters, PARAMETER_INPUT) == value);
+    TEST_ASSERT_TRUE(takt_parameters_get(&reader.parameters, PARAMETER_INPUT) == value);
 }
 
 static void test_inputs_are_read_at_once(void)

@@ -12,7 +12,7 @@ static struct spindle_feedback spindle;
 
 void setUp(void)
 {
-    spindle_watch_init(&watch, CYCLE_S, 80.0, 1.0);
+    takt_spindle_watch_init(&watch, CYCLE_S, 80.0, 1.0);
     spindle = (struct spindle_feedback){0};
 }
 
@@ -31,7 +31,7 @@ static void turn(enum spindle_direction direction)
 {
     const struct move m = {.kind = MOVE_SPINDLE, .direction = direction, .speed_rpm = 1000.0};
 
-    spindle_watch_pass(&watch, &m);
+    takt_spindle_watch_pass(&watch, &m);
 }
 
 static void test_feeds_per_revolution_go_by_the_measured_speed_and_not_by_its_ripple(void)
@@ -82,7 +82,7 @@ static void test_the_feed_is_never_lowered_to_nothing_and_comes_back_when_the_lo
 
 static void test_without_a_limit_the_load_changes_nothing(void)
 {
-    spindle_watch_init(&watch, CYCLE_S, 0.0, 0.0);
+    takt_spindle_watch_init(&watch, CYCLE_S, 0.0, 0.0);
     spindle.load_percent = 500.0;
     run(1000);
     TEST_ASSERT_EQUAL_DOUBLE(1.0, watch.ratio);

@@ -1,5 +1,5 @@
 /*
- * Errors of units, composed: random machines of three chains. Judged by a model of its own: rigid bodies with whole
+ * Errors of units, composed: random machines of three chains. Verified by a model of its own: rigid bodies with whole
  * rotation matrices, multiplied from the bed to the tool and from the bed to the part.
  */
 #include "base/maths.h"
@@ -41,10 +41,10 @@ static uint64_t state;
 
 void setUp(void)
 {
-    geometry_init(&geometry);
+    takt_geometry_init(&geometry);
     memset(&tables, 0, sizeof tables);
     memset(&move, 0, sizeof move);
-    correction_settings_set_default(&settings);
+    takt_correction_settings_set_default(&settings);
     move.kind = MOVE_FEED;
     tables.geometry = &geometry;
     state = UINT64_C(0x9E3779B97F4A7C15);
@@ -96,12 +96,12 @@ static void make_unit(unsigned unit, unsigned axis)
             table.value_mm[6 * k + i] =
                 (float)(value_of(&curves[unit][i], axis, x) * (i < 3 ? 1e-3 : 1e-6));
     }
-    TEST_ASSERT_TRUE(geometry_add(&geometry, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_geometry_add(&geometry, &table, &wrong));
 }
 
 static void make_machine(const struct unit_chain *chain)
 {
-    geometry_init(&geometry);
+    takt_geometry_init(&geometry);
     geometry.chain = *chain;
     for (unsigned i = 0; i < 3; i++) {
         geometry.tool_mm[i] = between(-100, 100);
@@ -110,12 +110,12 @@ static void make_machine(const struct unit_chain *chain)
     }
     for (unsigned u = 0; u < chain->units; u++)
         make_unit(u, chain->axis[u]);
-    correction_init(&c, &settings, 0x3F, CYCLE_S, &tables, &(struct point){{0}});
+    takt_correction_init(&c, &settings, 0x3F, CYCLE_S, &tables, &(struct point){{0}});
     for (int i = 0; i < 6000; i++) {
         const struct point at = {{0}};
         struct point set;
 
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
     }
 }
 
@@ -271,7 +271,7 @@ static void test_random_machines_are_corrected_within_a_micrometre_at_10000_poin
             const struct point at = any_point();
             struct point set;
 
-            correction_cycle(&c, &at, &move, &set);
+            takt_correction_cycle(&c, &at, &move, &set);
             before = fmax(before, distance_um(&at, &at));
             after = fmax(after, distance_um(&at, &set));
         }
@@ -288,7 +288,7 @@ static void test_the_turning_unit_is_turned_back_by_its_own_axis(void)
         const struct point at = any_point();
         struct point set;
 
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
         TEST_ASSERT_DOUBLE_WITHIN(1e-8, -1e-6 * value_of(&curves[3][4], AXIS_B, at.at[AXIS_B]),
                                   set.at[AXIS_B] - at.at[AXIS_B]);
     }
@@ -310,13 +310,13 @@ static void test_corrections_take_no_more_of_the_axes_than_was_reserved_for_them
             most.acceleration_mm_s2[i] = most.velocity_mm_s[i] * rate[i];
             most.jerk_mm_s3[i] = most.acceleration_mm_s2[i] * rate[i];
         }
-        correction_get_need(&c, &most, &need);
+        takt_correction_get_need(&c, &most, &need);
         for (int n = 0; n < 20000; n++) {
             struct point at, set;
 
             for (unsigned i = 0; i < AXIS_COUNT; i++)
                 at.at[i] = 0.999 * travel_mm[i] * sin(rate[i] * n * CYCLE_S + i);
-            correction_cycle(&c, &at, &move, &set);
+            takt_correction_cycle(&c, &at, &move, &set);
             memmove(k[1], k[0], 3 * sizeof k[0]);
             for (unsigned i = 0; i < AXIS_COUNT; i++)
                 k[0][i] = set.at[i] - at.at[i];
@@ -337,11 +337,11 @@ static void test_a_table_of_corrections_or_of_a_foreign_axis_is_no_unit(void)
 {
     make_machine(&chains[0]);
     table.input[0] = AXIS_C;
-    TEST_ASSERT_FALSE(geometry_add(&geometry, &table, &wrong));
+    TEST_ASSERT_FALSE(takt_geometry_add(&geometry, &table, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_UNIT, wrong.code);
     table.input[0] = AXIS_X;
     table.errors = false;
-    TEST_ASSERT_FALSE(geometry_add(&geometry, &table, &wrong));
+    TEST_ASSERT_FALSE(takt_geometry_add(&geometry, &table, &wrong));
 }
 
 int main(void)

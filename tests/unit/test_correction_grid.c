@@ -52,7 +52,7 @@ static double polynomial(unsigned output, const double *x)
 
 typedef double field(unsigned output, const double *x);
 
-/* inputs of the axes X, Y, Z, C with so many points from -100 to 300 (or rad). */
+/* inputs of the axes X, Y, Z, C with these numbers of points from -100 to 300 (or rad). */
 static void make(unsigned inputs, const uint16_t *points, const uint8_t *axes, field *f)
 {
     struct diagnostic wrong;
@@ -67,7 +67,7 @@ static void make(unsigned inputs, const uint16_t *points, const uint8_t *axes, f
     }
     for (uint8_t i = 0; i < 3; i++)
         table.output[i].axis = i;
-    for (uint32_t row = 0; row < table_rows(&table); row++) {
+    for (uint32_t row = 0; row < takt_table_rows(&table); row++) {
         double x[4] = {0};
         uint32_t rest = row;
 
@@ -78,7 +78,7 @@ static void make(unsigned inputs, const uint16_t *points, const uint8_t *axes, f
         for (unsigned o = 0; o < 3; o++)
             table.value_mm[3 * row + o] = (float)f(o, x);
     }
-    TEST_ASSERT_TRUE(grid_set(&grid, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_grid_set(&grid, &table, &wrong));
 }
 
 static void make_volume(field *f)
@@ -89,13 +89,13 @@ static void make_volume(field *f)
 static void evaluate(const struct point *at, float k[AXIS_COUNT])
 {
     memset(k, 0, sizeof(float) * AXIS_COUNT);
-    TEST_ASSERT_EQUAL_UINT(0, grid_add(&grid, at, 1.0F, k));
+    TEST_ASSERT_EQUAL_UINT(0, takt_grid_add(&grid, at, 1.0F, k));
 }
 
 static void test_a_grid_goes_through_its_points(void)
 {
     make_volume(wavy);
-    for (uint32_t row = 0; row < table_rows(&table); row++) {
+    for (uint32_t row = 0; row < takt_table_rows(&table); row++) {
         const struct point at = {
             {table.knot_mm[0][row % 9], table.knot_mm[1][row / 9 % 7], table.knot_mm[2][row / 63]}};
         float k[AXIS_COUNT];
@@ -142,8 +142,8 @@ static void test_the_turning_axis_is_corrected_too(void)
     make(4, (const uint16_t[]){4, 4, 4, 4}, (const uint8_t[]){AXIS_X, AXIS_Y, AXIS_Z, AXIS_B},
          polynomial);
     table.output[0].axis = AXIS_B;
-    TEST_ASSERT_TRUE(grid_set(&grid, &table, &wrong));
-    (void)grid_add(&grid, &(struct point){{0}}, 1.0F, k);
+    TEST_ASSERT_TRUE(takt_grid_set(&grid, &table, &wrong));
+    (void)takt_grid_add(&grid, &(struct point){{0}}, 1.0F, k);
     TEST_ASSERT_EQUAL_FLOAT(0.0F, k[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(3e-8, polynomial(0, (const double[]){0, 0, 0, 0}), (double)k[AXIS_B]);
 }
@@ -172,9 +172,9 @@ static void test_outside_the_edge_value_holds_from_one_step_on(void)
     float at_edge[AXIS_COUNT] = {0}, k[AXIS_COUNT] = {0}, l[AXIS_COUNT] = {0};
 
     make_volume(wavy);
-    TEST_ASSERT_EQUAL_UINT(0, grid_add(&grid, &edge, 1.0F, at_edge));
-    TEST_ASSERT_EQUAL_UINT(1U << AXIS_X, grid_add(&grid, &far, 1.0F, k));
-    TEST_ASSERT_EQUAL_UINT(1U << AXIS_X, grid_add(&grid, &farther, 1.0F, l));
+    TEST_ASSERT_EQUAL_UINT(0, takt_grid_add(&grid, &edge, 1.0F, at_edge));
+    TEST_ASSERT_EQUAL_UINT(1U << AXIS_X, takt_grid_add(&grid, &far, 1.0F, k));
+    TEST_ASSERT_EQUAL_UINT(1U << AXIS_X, takt_grid_add(&grid, &farther, 1.0F, l));
     for (unsigned o = 0; o < 3; o++) {
         TEST_ASSERT_FLOAT_WITHIN(1e-8F, at_edge[o], k[o]);
         TEST_ASSERT_FLOAT_WITHIN(1e-8F, at_edge[o], l[o]);
@@ -197,7 +197,7 @@ static void test_a_way_through_cells_and_edges_has_no_jump_in_acceleration(void)
         const struct point at = {{s, 0.7 * s + 20, 0.3 * s}};
         float k[AXIS_COUNT] = {0};
 
-        (void)grid_add(&grid, &at, 1.0F, k);
+        (void)takt_grid_add(&grid, &at, 1.0F, k);
         k0[3] = k0[2], k0[2] = k0[1], k0[1] = k0[0], k0[0] = (double)k[0];
         if (n > 3)
             worst = fmax(worst, fabs(k0[0] - 3 * k0[1] + 3 * k0[2] - k0[3]) / pow(cycle_s, 3));
@@ -223,8 +223,8 @@ static double patch_error(struct grid_patches *patches, const struct point *at)
     float direct[AXIS_COUNT] = {0}, near[AXIS_COUNT] = {0};
     double worst = 0;
 
-    TEST_ASSERT_EQUAL_UINT(grid_add(&grid, at, 1.0F, direct),
-                           grid_patch_add(&grid, patches, at, 1.0F, near));
+    TEST_ASSERT_EQUAL_UINT(takt_grid_add(&grid, at, 1.0F, direct),
+                           takt_grid_patch_add(&grid, patches, at, 1.0F, near));
     for (unsigned o = 0; o < 3; o++)
         worst = fmax(worst, fabs((double)(near[o] - direct[o])));
     return worst;
@@ -339,7 +339,7 @@ static struct point near_a_corner(void)
     return at;
 }
 
-/* Of K itself, and of its slope along an input: by the step of a table, over a thousandth of one. */
+/* Bounds of K itself, and of its slope along an input: by the step of a table, over a thousandth of one. */
 static void test_the_bounds_of_value_and_slope_hold_beyond_the_ends_of_a_table_as_well(void)
 {
     const double step_mm[3] = {400.0 / 8, 400.0 / 6, 400.0 / 5};
@@ -354,12 +354,13 @@ static void test_the_bounds_of_value_and_slope_hold_beyond_the_ends_of_a_table_a
             float k[AXIS_COUNT] = {0}, next[AXIS_COUNT] = {0};
 
             beside.at[i] += 1e-2 * step_mm[i];
-            (void)grid_add(&grid, &at, 1.0F, k);
-            (void)grid_add(&grid, &beside, 1.0F, next);
+            (void)takt_grid_add(&grid, &at, 1.0F, k);
+            (void)takt_grid_add(&grid, &beside, 1.0F, next);
             for (unsigned o = 0; o < 3; o++) {
                 const double value =
-                    (double)grid_bound(&grid, o, GRID_NO_INPUT, GRID_NO_INPUT, GRID_NO_INPUT);
-                const double slope = (double)grid_bound(&grid, o, i, GRID_NO_INPUT, GRID_NO_INPUT);
+                    (double)takt_grid_bound(&grid, o, GRID_NO_INPUT, GRID_NO_INPUT, GRID_NO_INPUT);
+                const double slope =
+                    (double)takt_grid_bound(&grid, o, i, GRID_NO_INPUT, GRID_NO_INPUT);
 
                 most_value = fmax(most_value, fabs((double)k[o]) / value);
                 most_slope = fmax(most_slope, fabs((double)(next[o] - k[o])) / 1e-2 / slope);
@@ -405,14 +406,14 @@ static void test_the_need_bounds_what_following_the_table_takes(void)
 
     memset(&need, 0, sizeof need);
     make_volume(wavy);
-    grid_need(&grid, &most, cycle_s, &need);
+    takt_grid_need(&grid, &most, cycle_s, &need);
     for (int n = 0; n < 20000; n++) {
         const double t = n * cycle_s;
         const struct point at = {
             {100 + 150 * sin(0.66 * t), 100 + 110 * cos(0.9 * t), 90 + 80 * sin(1.2 * t)}};
         float k[AXIS_COUNT] = {0};
 
-        (void)grid_add(&grid, &at, 1.0F, k);
+        (void)takt_grid_add(&grid, &at, 1.0F, k);
         take(&d, (double)k[0], cycle_s);
     }
     check_need(&d, &need, AXIS_X, 0, cycle_s);
@@ -435,14 +436,14 @@ static void test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_
             most.acceleration_mm_s2[i] = most.velocity_mm_s[i] * 2 * w;
             most.jerk_mm_s3[i] = most.acceleration_mm_s2[i] * 2 * w;
         }
-        grid_need(&grid, &most, cycle_s, &need);
+        takt_grid_need(&grid, &most, cycle_s, &need);
         for (int n = 0; n < 60000; n++) {
             const double t = w * n * cycle_s;
             const struct point at = {
                 {100 + 200 * sin(t), 100 + 190 * cos(0.9 * t), 90 + 100 * sin(1.7 * t)}};
             float k[AXIS_COUNT] = {0};
 
-            (void)grid_patch_add(&grid, &patches, &at, 1.0F, k);
+            (void)takt_grid_patch_add(&grid, &patches, &at, 1.0F, k);
             for (unsigned i = 0; i < 3 && n > 60; i++)
                 take(&d[i], (double)k[i], cycle_s);
         }
@@ -457,11 +458,11 @@ static void test_a_grid_that_finds_no_room_and_a_table_of_one_axis_are_refused(v
 
     make(2, (const uint16_t[]){70, 70}, (const uint8_t[]){AXIS_X, AXIS_Y}, wavy);
     table.inputs = 1;
-    TEST_ASSERT_FALSE(grid_set(&grid, &table, &wrong));
+    TEST_ASSERT_FALSE(takt_grid_set(&grid, &table, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_KIND, wrong.code);
     table.inputs = 3;
     table.knots[0] = table.knots[1] = table.knots[2] = 17;
-    TEST_ASSERT_FALSE(grid_set(&grid, &table, &wrong));
+    TEST_ASSERT_FALSE(takt_grid_set(&grid, &table, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_FULL, wrong.code);
 }
 

@@ -18,7 +18,7 @@ static const struct point origin = {{0}};
 
 void setUp(void)
 {
-    correction_settings_set_default(&settings);
+    takt_correction_settings_set_default(&settings);
     memset(&tables, 0, sizeof tables);
     memset(&other_tables, 0, sizeof other_tables);
     memset(&move, 0, sizeof move);
@@ -31,7 +31,7 @@ void tearDown(void)
 
 static void begin(const struct correction_tables *with)
 {
-    correction_init(&c, &settings, 0x27, CYCLE_S, with, &origin); /* X Y Z C */
+    takt_correction_init(&c, &settings, 0x27, CYCLE_S, with, &origin); /* X Y Z C */
 }
 
 /* Stands at a point until everything has faded. */
@@ -41,7 +41,7 @@ static struct point settle(double x, double y, double z, double turn)
     struct point set = at;
 
     for (int i = 0; i < 6000; i++)
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
     for (int i = 0; i < AXIS_COUNT; i++)
         set.at[i] -= at.at[i];
     return set;
@@ -75,7 +75,7 @@ static void make_volume(struct correction_tables *to, double um)
     }
     for (unsigned i = 0; i < 8; i++)
         table.value_mm[i] = (float)(1e-3 * um);
-    TEST_ASSERT_TRUE(grid_set(&to->volume, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_grid_set(&to->volume, &table, &wrong));
 }
 
 static void test_without_anything_to_correct_the_setpoint_is_the_command_to_the_last_bit(void)
@@ -84,7 +84,7 @@ static void test_without_anything_to_correct_the_setpoint_is_the_command_to_the_
     struct point set;
 
     begin(NULL);
-    correction_cycle(&c, &at, &move, &set);
+    takt_correction_cycle(&c, &at, &move, &set);
     TEST_ASSERT_EQUAL_MEMORY(&at, &set, sizeof set);
 }
 
@@ -122,9 +122,9 @@ static void test_the_setup_layer_moves_no_axis_that_is_not_there(void)
 
     settings.setup_rotation_rad[AXIS_X] = 0.01;
     settings.setup_offset_mm[AXIS_Z] = 0.2;
-    correction_init(&c, &settings, 0x3, CYCLE_S, NULL, &origin); /* X Y */
+    takt_correction_init(&c, &settings, 0x3, CYCLE_S, NULL, &origin); /* X Y */
     for (int i = 0; i < 6000; i++)
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, set.at[AXIS_Z]);
     TEST_ASSERT_TRUE(set.at[AXIS_Y] != at.at[AXIS_Y]);
 }
@@ -223,14 +223,14 @@ static void test_a_set_up_on_a_table_takes_no_more_of_the_axes_than_it_asked_for
         most.acceleration_mm_s2[i] = most.velocity_mm_s[i] * rate[i];
         most.jerk_mm_s3[i] = most.acceleration_mm_s2[i] * rate[i];
     }
-    correction_get_need(&c, &most, &need);
+    takt_correction_get_need(&c, &most, &need);
     (void)settle(0, 0, 0, 0);
     for (int n = 0; n < 20000; n++) {
         struct point at, set;
 
         for (int i = 0; i < AXIS_COUNT; i++)
             at.at[i] = size[i] * sin(rate[i] * n * CYCLE_S + i);
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
         memmove(k[1], k[0], 3 * sizeof k[0]);
         for (int i = 0; i < 3; i++) {
             k[0][i] = set.at[i] - at.at[i];
@@ -251,7 +251,7 @@ static void test_thermal_growth_of_fifteen_kelvin_is_taken_back(void)
     settings.thermal_per_k[AXIS_Y] = 11e-6;
     settings.thermal_reference_mm[AXIS_Y] = 50;
     begin(NULL);
-    correction_set_rise(&c, AXIS_Y, 15.0);
+    takt_correction_set_rise(&c, AXIS_Y, 15.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, -11e-6 * 15 * 250, settle(0, 300, 0, 0).at[AXIS_Y]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 11e-6 * 15 * 50, settle(0, 0, 0, 0).at[AXIS_Y]);
 }
@@ -259,7 +259,7 @@ static void test_thermal_growth_of_fifteen_kelvin_is_taken_back(void)
 static void test_backlash_follows_the_direction_of_the_last_motion(void)
 {
     make_axis_table(AXIS_X, AXIS_X, 10, -10);
-    TEST_ASSERT_TRUE(axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_axis_tables_add(&tables.axes, &table, &wrong));
     begin(&tables);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.01, settle(50, 0, 0, 0).at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -0.01, settle(49.99, 0, 0, 0).at[AXIS_X]);
@@ -277,14 +277,14 @@ static void test_a_reversal_fades_within_the_need(void)
     struct point set;
 
     make_axis_table(AXIS_X, AXIS_X, 10, -10);
-    TEST_ASSERT_TRUE(axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_axis_tables_add(&tables.axes, &table, &wrong));
     begin(&tables);
-    correction_get_need(&c, &most, &need);
+    takt_correction_get_need(&c, &most, &need);
     (void)settle(50, 0, 0, 0);
     for (int i = 0; i < 2000; i++) {
         const struct point at = {{i < 1000 ? 50 - 1e-5 * i : 49.99 + 1e-5 * (i - 1000)}};
 
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
         x[3] = x[2], x[2] = x[1], x[1] = x[0], x[0] = set.at[AXIS_X] - at.at[AXIS_X];
         if (i < 4)
             continue;
@@ -306,16 +306,16 @@ static void test_a_worn_tool_is_followed_along_and_across(void)
     move.tool = 7;
     move.contour_side = CUTTER_LEFT;
     for (int i = 0; i <= 20000; i++)
-        correction_cycle(&c, &(struct point){{0.05 * i}}, &move, &set);
+        takt_correction_cycle(&c, &(struct point){{0.05 * i}}, &move, &set);
     move.kind = MOVE_DWELL;
     for (int i = 0; i < 5000; i++)
-        correction_cycle(&c, &(struct point){{1000}}, &move, &set);
+        takt_correction_cycle(&c, &(struct point){{1000}}, &move, &set);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -1e-3, set.at[AXIS_Z]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2e-3, set.at[AXIS_Y]); /* right of the way in X */
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1000, set.at[AXIS_X]);
     double length_mm, time_s;
 
-    correction_get_wear(&c, 7, &length_mm, &time_s);
+    takt_correction_get_wear(&c, 7, &length_mm, &time_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1000, length_mm);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 20, time_s);
 }
@@ -326,13 +326,13 @@ static void test_wear_is_kept_per_tool(void)
 
     settings.wear_along_per_mm = 1e-6;
     begin(NULL);
-    correction_set_wear(&c, 3, 5000, 60);
-    correction_set_wear(&c, 4, 1000, 10);
+    takt_correction_set_wear(&c, 3, 5000, 60);
+    takt_correction_set_wear(&c, 4, 1000, 10);
     move.tool = 3;
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -5e-3, settle(0, 0, 0, 0).at[AXIS_Z]);
     move.tool = 4;
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, -1e-3, settle(0, 0, 0, 0).at[AXIS_Z]);
-    correction_get_wear(&c, 3, &length_mm, &time_s);
+    takt_correction_get_wear(&c, 3, &length_mm, &time_s);
     TEST_ASSERT_EQUAL_DOUBLE(5000, length_mm);
 }
 
@@ -344,10 +344,10 @@ static void test_layers_add_up(void)
     make_volume(&tables, 7);
     table.output[0].axis = AXIS_X;
     begin(&tables);
-    correction_set_rise(&c, AXIS_X, 10);
+    takt_correction_set_rise(&c, AXIS_X, 10);
     TEST_ASSERT_EQUAL_HEX(1U << CORRECTION_MATRIX | 1U << CORRECTION_SETUP |
                               1U << CORRECTION_VOLUME | 1U << CORRECTION_THERMAL,
-                          correction_get_present(&c));
+                          takt_correction_get_present(&c));
     TEST_ASSERT_DOUBLE_WITHIN(2e-8, -0.0025 + 0.2 + 0.007 - 0.01, settle(100, 0, 0, 0).at[AXIS_X]);
 }
 
@@ -358,16 +358,16 @@ static void test_machine_file_operator_and_program_switch_layers(void)
     settings.off = 1U << CORRECTION_SETUP;
     begin(NULL);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.01, settle(100, 0, 0, 0).at[AXIS_X]);
-    correction_switch(&c, CORRECTION_SETUP, true);
+    takt_correction_switch(&c, CORRECTION_SETUP, true);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.51, settle(100, 0, 0, 0).at[AXIS_X]);
     move.correction_off = 1U << CORRECTION_MATRIX;
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.5, settle(100, 0, 0, 0).at[AXIS_X]);
     move.kind = MOVE_DWELL; /* says nothing of layers */
     move.correction_off = 0;
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.5, settle(100, 0, 0, 0).at[AXIS_X]);
-    correction_switch(&c, CORRECTION_SETUP, false);
+    takt_correction_switch(&c, CORRECTION_SETUP, false);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, settle(100, 0, 0, 0).at[AXIS_X]);
-    TEST_ASSERT_EQUAL_HEX(0, correction_get_running(&c));
+    TEST_ASSERT_EQUAL_HEX(0, takt_correction_get_running(&c));
 }
 
 static void test_tables_are_exchanged_without_a_jump(void)
@@ -379,17 +379,17 @@ static void test_tables_are_exchanged_without_a_jump(void)
     make_volume(&other_tables, -30);
     begin(&tables);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.03, settle(50, 50, 50, 0).at[AXIS_X]);
-    TEST_ASSERT_TRUE(correction_load(&c, &other_tables, &wrong));
+    TEST_ASSERT_TRUE(takt_correction_load(&c, &other_tables, &wrong));
     for (int i = 0; i < 20000; i++) {
         const struct point at = {{50, 50, 50}};
 
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
         if (i > 0)
             largest = fmax(largest, fabs(set.at[AXIS_X] - before));
         before = set.at[AXIS_X];
-        TEST_ASSERT_TRUE(i > 0 || correction_is_loading(&c));
+        TEST_ASSERT_TRUE(i > 0 || takt_correction_is_loading(&c));
     }
-    TEST_ASSERT_FALSE(correction_is_loading(&c));
+    TEST_ASSERT_FALSE(takt_correction_is_loading(&c));
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 49.97, before);
     TEST_ASSERT_TRUE(largest < 1e-4); /* 0.1 mm/s */
 }
@@ -403,16 +403,16 @@ static void test_a_table_that_needs_more_than_is_reserved_is_refused_and_the_old
     make_volume(&tables, 5);
     make_volume(&other_tables, 500);
     begin(&tables);
-    correction_reserve(&c, &most, &need);
-    TEST_ASSERT_FALSE(correction_load(&c, &other_tables, &wrong));
+    takt_correction_reserve(&c, &most, &need);
+    TEST_ASSERT_FALSE(takt_correction_load(&c, &other_tables, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_RESERVE, wrong.code);
-    TEST_ASSERT_FALSE(correction_is_loading(&c));
+    TEST_ASSERT_FALSE(takt_correction_is_loading(&c));
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.005, settle(50, 50, 50, 0).at[AXIS_X]);
     settings.reserve_ratio = 0.05;
     begin(&tables);
-    correction_reserve(&c, &most, &need);
+    takt_correction_reserve(&c, &most, &need);
     TEST_ASSERT_EQUAL_DOUBLE(5.0, need.velocity_mm_s[AXIS_X]);
-    TEST_ASSERT_TRUE(correction_load(&c, &other_tables, &wrong));
+    TEST_ASSERT_TRUE(takt_correction_load(&c, &other_tables, &wrong));
 }
 
 static void test_a_set_up_that_is_told_while_axes_move_fades_in(void)
@@ -426,28 +426,28 @@ static void test_a_set_up_that_is_told_while_axes_move_fades_in(void)
     settings.setup_offset_mm[AXIS_X] = 0.3;
     settings.reserve_ratio = 0.05;
     begin(NULL);
-    correction_reserve(&c, &most, &need);
+    takt_correction_reserve(&c, &most, &need);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.3, settle(50, 0, 0, 0).at[AXIS_X]);
     before = 50.3;
-    correction_tell_setup(&c, AXIS_X, -0.2);
-    correction_tell_setup(&c, AXIS_Y, 0.1);
-    TEST_ASSERT_FALSE(correction_is_set_up(&c));
-    TEST_ASSERT_TRUE(correction_take_setup(&c));
-    TEST_ASSERT_TRUE(correction_is_set_up(&c) && correction_is_setting_up(&c));
+    takt_correction_tell_setup(&c, AXIS_X, -0.2);
+    takt_correction_tell_setup(&c, AXIS_Y, 0.1);
+    TEST_ASSERT_FALSE(takt_correction_is_set_up(&c));
+    TEST_ASSERT_TRUE(takt_correction_take_setup(&c));
+    TEST_ASSERT_TRUE(takt_correction_is_set_up(&c) && takt_correction_is_setting_up(&c));
     for (int i = 0; i < 20000; i++) {
         const struct point at = {{50, 0, 0}};
 
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
         largest = fmax(largest, fabs(set.at[AXIS_X] - before));
         before = set.at[AXIS_X];
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 49.8, set.at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.1, set.at[AXIS_Y]);
     TEST_ASSERT_TRUE(largest < 1e-3); /* 1 mm/s */
-    TEST_ASSERT_FALSE(correction_is_setting_up(&c));
-    correction_tell_setup(&c, AXIS_X, 50.0);
-    TEST_ASSERT_FALSE(correction_take_setup(&c));
-    TEST_ASSERT_TRUE(correction_is_set_up(&c));
+    TEST_ASSERT_FALSE(takt_correction_is_setting_up(&c));
+    takt_correction_tell_setup(&c, AXIS_X, 50.0);
+    TEST_ASSERT_FALSE(takt_correction_take_setup(&c));
+    TEST_ASSERT_TRUE(takt_correction_is_set_up(&c));
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.2, settle(50, 0, 0, 0).at[AXIS_X]);
 }
 
@@ -456,9 +456,9 @@ static void test_leaving_a_table_is_told_once_until_it_is_asked(void)
     make_volume(&tables, 5);
     begin(&tables);
     (void)settle(50, 50, 50, 0);
-    TEST_ASSERT_EQUAL_HEX(0, correction_take_outside(&c));
+    TEST_ASSERT_EQUAL_HEX(0, takt_correction_take_outside(&c));
     (void)settle(50, 101, -0.5, 0);
-    TEST_ASSERT_EQUAL_HEX(1U << AXIS_Y | 1U << AXIS_Z, correction_take_outside(&c));
+    TEST_ASSERT_EQUAL_HEX(1U << AXIS_Y | 1U << AXIS_Z, takt_correction_take_outside(&c));
 }
 
 static void test_the_settled_correction_is_what_the_cycle_comes_to(void)
@@ -470,9 +470,9 @@ static void test_the_settled_correction_is_what_the_cycle_comes_to(void)
     settings.setup_rotation_rad[AXIS_Z] = 1e-4;
     make_volume(&tables, 12);
     make_axis_table(AXIS_Y, AXIS_Z, 4, 2);
-    TEST_ASSERT_TRUE(axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_axis_tables_add(&tables.axes, &table, &wrong));
     begin(&tables);
-    correction_evaluate(&c, &at, &move, &k);
+    takt_correction_evaluate(&c, &at, &move, &k);
     settled = settle(70, 30, 20, 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, settled.at[AXIS_X], k.at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, settled.at[AXIS_Y], k.at[AXIS_Y]);
@@ -482,12 +482,12 @@ static void test_the_settled_correction_is_what_the_cycle_comes_to(void)
 static void test_a_pair_of_axes_given_twice_and_too_many_points_are_refused(void)
 {
     make_axis_table(AXIS_X, AXIS_X, 1, 1);
-    TEST_ASSERT_TRUE(axis_tables_add(&tables.axes, &table, &wrong));
-    TEST_ASSERT_FALSE(axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_FALSE(takt_axis_tables_add(&tables.axes, &table, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_PAIR_TWICE, wrong.code);
     tables.axes.points = AXIS_TABLES_POINTS_MAX - 2;
     make_axis_table(AXIS_Y, AXIS_X, 1, 1);
-    TEST_ASSERT_FALSE(axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_FALSE(takt_axis_tables_add(&tables.axes, &table, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_PAIRS_MANY, wrong.code);
 }
 
@@ -502,10 +502,11 @@ static void test_a_volume_fades_in_when_its_first_patch_is_there_at_rest_and_in_
         const struct point at = {{50 + 40 * sin(a), 50 + 40 * cos(a), 50 + 30 * sin(0.7 * a)}};
         struct point set;
 
-        correction_switch(&c, CORRECTION_VOLUME, i < 5000 || i > 12000);
-        correction_cycle(&c, &at, &move, &set);
-        faded += correction_get_running(&c) == 0 ? 1 : 0;
-        TEST_ASSERT_TRUE(correction_get_running(&c) == 0 || c.patches.patch[c.patches.used].valid);
+        takt_correction_switch(&c, CORRECTION_VOLUME, i < 5000 || i > 12000);
+        takt_correction_cycle(&c, &at, &move, &set);
+        faded += takt_correction_get_running(&c) == 0 ? 1 : 0;
+        TEST_ASSERT_TRUE(takt_correction_get_running(&c) == 0 ||
+                         c.patches.patch[c.patches.used].valid);
     }
     TEST_ASSERT_TRUE(faded > 20 && faded < 7000);
 }

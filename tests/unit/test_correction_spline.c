@@ -40,7 +40,7 @@ static void test_a_cubic_through_uneven_points_is_reproduced(void)
 
     for (unsigned i = 0; i < 6; i++)
         value[i] = cubic(knot[i]);
-    spline_set_bends(6, knot, value, bend);
+    takt_spline_set_bends(6, knot, value, bend);
     for (int i = 0; i <= 600; i++) {
         const double x = -2 + 0.01 * i;
 
@@ -55,7 +55,7 @@ static void test_a_cubic_through_four_points_is_reproduced(void)
 
     for (unsigned i = 0; i < 4; i++)
         value[i] = cubic(knot[i]);
-    spline_set_bends(4, knot, value, bend);
+    takt_spline_set_bends(4, knot, value, bend);
     for (int i = 0; i <= 400; i++) {
         const double x = 0.01 * i;
 
@@ -68,10 +68,10 @@ static void test_three_points_make_a_parabola_and_two_a_line(void)
     const double knot[] = {0, 1, 4}, value[] = {1, 0, 9}; /* (x - 1)^2 */
     double bend[3];
 
-    spline_set_bends(3, knot, value, bend);
+    takt_spline_set_bends(3, knot, value, bend);
     for (unsigned i = 0; i < 3; i++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-13, 2.0, bend[i]);
-    spline_set_bends(2, knot, value, bend);
+    takt_spline_set_bends(2, knot, value, bend);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bend[0]);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bend[1]);
 }
@@ -82,7 +82,7 @@ static void test_a_spline_is_continuous_with_two_derivatives(void)
     const double value[] = {0, 5, -3, 4, 4, -6, 2};
     double bend[7];
 
-    spline_set_bends(7, knot, value, bend);
+    takt_spline_set_bends(7, knot, value, bend);
     for (unsigned i = 1; i < 6; i++) {
         const double d = 1e-4, x = knot[i];
         const double y[5] = {spline_at(7, knot, value, bend, x - 2 * d),
@@ -102,7 +102,7 @@ static void test_a_fade_comes_to_its_target_exactly_and_does_not_overshoot(void)
     struct fade_pace pace;
     unsigned cycles = 0, at_99 = 0;
 
-    fade_pace_set(&pace, 0.5, 0.001);
+    takt_fade_pace_set(&pace, 0.5, 0.001);
     while (fade_cycle(&f, 1.0, &pace)) {
         cycles++;
         if (f.value < 0.99)
@@ -138,7 +138,7 @@ static void test_a_fade_keeps_its_bounds_however_its_target_jumps(void)
     struct fade_pace pace;
     double target = 1.0;
 
-    fade_pace_set(&pace, 0.3, cycle_s);
+    takt_fade_pace_set(&pace, 0.3, cycle_s);
     for (int k = 0; k < 1000000; k++) {
         if (random_next(&state) % 60 == 0)
             target = 1.0 - target;
@@ -150,18 +150,18 @@ static void test_a_fade_keeps_its_bounds_however_its_target_jumps(void)
         raise_to(&a, (x[0] - 2 * x[1] + x[2]) / (cycle_s * cycle_s));
         raise_to(&j, (x[0] - 3 * x[1] + 3 * x[2] - x[3]) / (cycle_s * cycle_s * cycle_s));
     }
-    TEST_ASSERT_TRUE(v <= fade_velocity_per_s(&pace));
-    TEST_ASSERT_TRUE(a <= fade_acceleration_per_s2(&pace));
-    TEST_ASSERT_TRUE(j <= fade_jerk_per_s3(&pace));
-    TEST_ASSERT_TRUE(v > 0.8 * fade_velocity_per_s(&pace)); /* the bounds are not idle */
-    TEST_ASSERT_TRUE(j > 0.7 * fade_jerk_per_s3(&pace));
+    TEST_ASSERT_TRUE(v <= takt_fade_velocity_per_s(&pace));
+    TEST_ASSERT_TRUE(a <= takt_fade_acceleration_per_s2(&pace));
+    TEST_ASSERT_TRUE(j <= takt_fade_jerk_per_s3(&pace));
+    TEST_ASSERT_TRUE(v > 0.8 * takt_fade_velocity_per_s(&pace)); /* the bounds are not idle */
+    TEST_ASSERT_TRUE(j > 0.7 * takt_fade_jerk_per_s3(&pace));
 }
 
 static void test_a_fade_takes_forty_cycles_at_least(void)
 {
     struct fade_pace pace;
 
-    fade_pace_set(&pace, 0.0, 0.001);
+    takt_fade_pace_set(&pace, 0.0, 0.001);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 8.406 / FADE_CYCLES_MIN, pace.rate);
 }
 

@@ -24,7 +24,7 @@ void tearDown(void)
 
 static bool read_text(const char *text)
 {
-    return table_read_text(text, strlen(text), &rules, &table, &wrong);
+    return takt_table_read_text(text, strlen(text), &rules, &table, &wrong);
 }
 
 static const char plane[] = "# a small grid\n"
@@ -94,7 +94,7 @@ static void write_table(struct collected *c)
     const struct table_sink sink = {c, collect};
 
     c->length = 0;
-    table_write_text(&table, "written again", &sink);
+    takt_table_write_text(&table, "written again", &sink);
 }
 
 static void expect_same_table(void)
@@ -106,7 +106,7 @@ static void expect_same_table(void)
         for (unsigned k = 0; k < table.knots[i]; k++)
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, other.knot_mm[i][k], table.knot_mm[i][k]);
     }
-    for (uint32_t i = 0; i < table_rows(&table) * table.outputs; i++)
+    for (uint32_t i = 0; i < takt_table_rows(&table) * table.outputs; i++)
         TEST_ASSERT_FLOAT_WITHIN(1e-9F, other.value_mm[i], table.value_mm[i]);
 }
 
@@ -139,10 +139,11 @@ static void test_a_stored_table_comes_back_to_the_last_bit(void)
 
     TEST_ASSERT_TRUE(read_text(plane));
     other = table;
-    TEST_ASSERT_TRUE(table_store_size(&table) <= sizeof bytes);
-    table_store(&table, bytes);
+    TEST_ASSERT_TRUE(takt_table_store_size(&table) <= sizeof bytes);
+    takt_table_store(&table, bytes);
     memset(&table, 0, sizeof table);
-    TEST_ASSERT_TRUE(table_restore(bytes, table_store_size(&other), &rules, &table, &wrong));
+    TEST_ASSERT_TRUE(
+        takt_table_restore(bytes, takt_table_store_size(&other), &rules, &table, &wrong));
     expect_same_table();
     TEST_ASSERT_EQUAL_MEMORY(other.value_mm, table.value_mm, sizeof(float) * 12);
 }
@@ -159,15 +160,16 @@ static void test_a_volume_of_two_thousand_points_is_stored_in_25_kilobytes(void)
         for (unsigned k = 0; k < table.knots[i]; k++)
             table.knot_mm[i][k] = 25.0 * k;
     }
-    for (uint32_t i = 0; i < 3 * table_rows(&table); i++)
+    for (uint32_t i = 0; i < 3 * takt_table_rows(&table); i++)
         table.value_mm[i] = 1e-3F * (float)(i % 7);
     other = table;
-    TEST_ASSERT_EQUAL_UINT(2000, table_rows(&table));
-    TEST_ASSERT_EQUAL_UINT(12 * 2000 + 8 * 40 + 30, table_store_size(&table));
-    TEST_ASSERT_TRUE(table_store_size(&table) <= sizeof bytes);
-    table_store(&table, bytes);
+    TEST_ASSERT_EQUAL_UINT(2000, takt_table_rows(&table));
+    TEST_ASSERT_EQUAL_UINT(12 * 2000 + 8 * 40 + 30, takt_table_store_size(&table));
+    TEST_ASSERT_TRUE(takt_table_store_size(&table) <= sizeof bytes);
+    takt_table_store(&table, bytes);
     memset(&table, 0, sizeof table);
-    TEST_ASSERT_TRUE(table_restore(bytes, table_store_size(&other), &rules, &table, &wrong));
+    TEST_ASSERT_TRUE(
+        takt_table_restore(bytes, takt_table_store_size(&other), &rules, &table, &wrong));
     TEST_ASSERT_EQUAL_MEMORY(other.value_mm, table.value_mm, sizeof(float) * 6000);
 }
 
@@ -177,15 +179,15 @@ static void test_every_damaged_byte_and_every_missing_end_of_a_stored_table_is_r
     size_t size;
 
     TEST_ASSERT_TRUE(read_text(plane));
-    size = table_store_size(&table);
-    table_store(&table, bytes);
+    size = takt_table_store_size(&table);
+    takt_table_store(&table, bytes);
     for (size_t i = 0; i < size; i++) {
         bytes[i] ^= 0x10;
-        TEST_ASSERT_FALSE(table_restore(bytes, size, &rules, &other, &wrong));
+        TEST_ASSERT_FALSE(takt_table_restore(bytes, size, &rules, &other, &wrong));
         TEST_ASSERT_TRUE(wrong.code == TAKT_ERROR_TABLE_CHECKSUM ||
                          wrong.code == TAKT_ERROR_TABLE_DAMAGED);
         bytes[i] ^= 0x10;
-        TEST_ASSERT_FALSE(table_restore(bytes, i, &rules, &other, &wrong));
+        TEST_ASSERT_FALSE(takt_table_restore(bytes, i, &rules, &other, &wrong));
     }
 }
 
@@ -195,7 +197,7 @@ static void test_measured_triplets_become_corrections_of_both_directions(void)
         "# nominal forward reverse\n0.0 0.0 0.001\n10.0 10.002 9.999\n\n20 20 20\n";
 
     TEST_ASSERT_TRUE(
-        table_read_triplets(comp, strlen(comp), AXIS_Y, 0, 1.0, &rules, &table, &wrong));
+        takt_table_read_triplets(comp, strlen(comp), AXIS_Y, 0, 1.0, &rules, &table, &wrong));
     TEST_ASSERT_EQUAL_UINT(AXIS_Y, table.input[0]);
     TEST_ASSERT_EQUAL_UINT(3, table.knots[0]);
     TEST_ASSERT_FLOAT_WITHIN(1e-8F, -0.002F, table.value_mm[2]); /* forward: 10.002 is too far */
@@ -207,7 +209,7 @@ static void test_triplets_of_the_other_type_are_corrections_already(void)
     static const char comp[] = "0 0.001 0\n10 0.002 -0.003\n";
 
     TEST_ASSERT_TRUE(
-        table_read_triplets(comp, strlen(comp), AXIS_X, 1, 1.0, &rules, &table, &wrong));
+        takt_table_read_triplets(comp, strlen(comp), AXIS_X, 1, 1.0, &rules, &table, &wrong));
     TEST_ASSERT_FLOAT_WITHIN(1e-9F, 0.002F, table.value_mm[2]);
     TEST_ASSERT_FLOAT_WITHIN(1e-9F, -0.003F, table.value_mm[3]);
 }
@@ -217,7 +219,7 @@ static void test_triplets_that_are_none_are_refused(void)
     static const char comp[] = "0 0 0\n10 10\n";
 
     TEST_ASSERT_FALSE(
-        table_read_triplets(comp, strlen(comp), AXIS_X, 0, 1.0, &rules, &table, &wrong));
+        takt_table_read_triplets(comp, strlen(comp), AXIS_X, 0, 1.0, &rules, &table, &wrong));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_TRIPLET, wrong.code);
     TEST_ASSERT_EQUAL_UINT(2, wrong.line);
 }

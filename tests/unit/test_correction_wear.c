@@ -1,5 +1,5 @@
 /*
- * Wear of tools that point anywhere. Judged by the worn tool itself: corrected, it is to touch the floor and the wall that
+ * Wear of tools that point anywhere. Verified by the worn tool itself: corrected, it is to touch the floor and the wall that
  * the unworn one has touched. The head turns by Rodrigues' formula, and the wall's normal is what is left of "to the right"
  * when the way and the tool have been taken out of it (Gram-Schmidt).
  */
@@ -22,7 +22,7 @@ static const struct point origin = {{0}};
 
 void setUp(void)
 {
-    correction_settings_set_default(&settings);
+    takt_correction_settings_set_default(&settings);
     settings.fade_s = 0.5;
     memset(&move, 0, sizeof move);
     move.kind = MOVE_FEED;
@@ -99,9 +99,9 @@ static void get_right(const double way[SIDE], double right[SIDE])
 
 static void start(void)
 {
-    correction_init(&c, &settings, 0x3f, CYCLE_S, NULL, &origin);
+    takt_correction_init(&c, &settings, 0x3f, CYCLE_S, NULL, &origin);
     move.tool = 5;
-    correction_set_wear(&c, 5, between(0, 20000), between(0, 600));
+    takt_correction_set_wear(&c, 5, between(0, 20000), between(0, 600));
 }
 
 /* Cuts along way, the head at angle, and stands until K has come. */
@@ -116,7 +116,7 @@ static void cut(const double way[SIDE], double angle, double k[SIDE])
         move.kind = i < CYCLES / 2 ? MOVE_FEED : MOVE_DWELL;
         if (settings.head_axis < AXIS_COUNT)
             at.at[settings.head_axis] = angle;
-        correction_cycle(&c, &at, &move, &set);
+        takt_correction_cycle(&c, &at, &move, &set);
     }
     for (int i = 0; i < SIDE; i++)
         k[i] = set.at[i] - at.at[i];
@@ -127,7 +127,7 @@ static double lost(double per_mm, double mm_s)
 {
     double length_mm, time_s;
 
-    correction_get_wear(&c, 5, &length_mm, &time_s);
+    takt_correction_get_wear(&c, 5, &length_mm, &time_s);
     return per_mm * length_mm + mm_s * time_s;
 }
 
@@ -209,8 +209,8 @@ static void test_a_tool_that_says_nothing_of_its_direction_stands_along_z(void)
     double k[SIDE];
 
     settings.wear_along_per_mm = 1e-6;
-    correction_init(&c, &settings, 0x7, CYCLE_S, NULL, &origin);
-    correction_set_wear(&c, 0, 5000, 0);
+    takt_correction_init(&c, &settings, 0x7, CYCLE_S, NULL, &origin);
+    takt_correction_set_wear(&c, 0, 5000, 0);
     cut((double[]){0, 0, 0}, 0, k);
     TEST_ASSERT_EQUAL_DOUBLE(0, k[AXIS_X]);
     TEST_ASSERT_EQUAL_DOUBLE(0, k[AXIS_Y]);
@@ -245,16 +245,16 @@ static void test_a_head_that_turns_takes_no_more_of_the_axes_than_it_asked_for(v
 
     settings.head_axis = AXIS_B;
     settings.wear_along_per_mm = 1e-6;
-    correction_init(&c, &settings, 0x3f, CYCLE_S, NULL, &origin);
+    takt_correction_init(&c, &settings, 0x3f, CYCLE_S, NULL, &origin);
     memset(&need, 0, sizeof need);
-    correction_get_need(&c, &most, &need);
+    takt_correction_get_need(&c, &most, &need);
     for (int i = 0; i < 20000; i++) {
         const struct point at = {{0, 0, 0, 0, swing * sin(rate * CYCLE_S * i)}};
         struct point set;
 
         if (i % 700 == 0)
-            correction_set_wear(&c, 0, i / 700 % 2 == 0 ? 1e5 : 0, 0);
-        correction_cycle(&c, &at, &move, &set);
+            takt_correction_set_wear(&c, 0, i / 700 % 2 == 0 ? 1e5 : 0, 0);
+        takt_correction_cycle(&c, &at, &move, &set);
         memmove(k[1], k[0], 3 * sizeof k[0]);
         for (int j = 0; j < SIDE; j++)
             k[0][j] = set.at[j] - at.at[j];

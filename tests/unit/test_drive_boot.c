@@ -7,7 +7,7 @@
 static void assert_refused(enum takt_error error, const char *text)
 {
     run_start();
-    TEST_ASSERT_EQUAL_INT(error, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(error, takt_drives_get_fault(&drives)->code);
     assert_text(text);
     run_until(DRIVES_FAULTED);
     for (unsigned node = 1; node <= DRIVES; node++)
@@ -28,7 +28,7 @@ static void test_drives_that_answer_are_enabled(void)
 
 static void test_nodes_are_started_one_a_cycle_so_that_their_event_timers_are_staggered(void)
 {
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     while (nodes.starts[3] == 0)
         cycle();
     TEST_ASSERT_EQUAL_UINT(0, nodes.starts[2]);
@@ -42,7 +42,7 @@ static void test_nodes_are_started_one_a_cycle_so_that_their_event_timers_are_st
 static void test_nothing_is_asked_before_all_have_booted(void)
 {
     nodes.mute = 3;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     for (unsigned i = 0; i < 400; i++)
         cycle();
     TEST_ASSERT_EQUAL_UINT(0, nodes.written_count);
@@ -186,7 +186,7 @@ static void test_setpoints_wait_for_a_brake_and_not_for_a_drive_that_does_not_te
     TEST_ASSERT_GREATER_THAN_UINT(1000, without);
     setUp();
     follows_at_once = false;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     for (unsigned i = 0; i < 600; i++) {
         cycle();
         TEST_ASSERT_EQUAL_INT(DRIVES_STARTING, drives_get_state(&drives));
@@ -275,7 +275,7 @@ static void test_a_node_of_another_type_that_tells_modes_is_taken_for_a_drive(vo
         set_rule((struct fake_rule){.node = 2, .object = SDO_OBJECT(0x1000, 0), .value = types[i]});
         run_start();
         TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
-        TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_TYPE, drives_get_given_up(&drives, AXIS_Y));
+        TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_TYPE, takt_drives_get_given_up(&drives, AXIS_Y));
     }
 }
 
@@ -312,14 +312,14 @@ static void test_a_refusal_is_told_with_object_code_and_meaning(void)
 
 static bool gave_up(enum axis axis, enum drives_given_up what)
 {
-    return drives_get_given_up(&drives, axis) >> what & 1;
+    return takt_drives_get_given_up(&drives, axis) >> what & 1;
 }
 
 static void test_nothing_is_given_up_by_drives_that_take_everything(void)
 {
     run_start();
     for (unsigned i = 0; i < DRIVES; i++)
-        TEST_ASSERT_EQUAL_HEX32(0, drives_get_given_up(&drives, (enum axis)(AXIS_X + (int)i)));
+        TEST_ASSERT_EQUAL_HEX32(0, takt_drives_get_given_up(&drives, (enum axis)(AXIS_X + (int)i)));
 }
 
 static void test_an_optional_object_that_is_refused_for_any_reason_is_given_up(void)
@@ -347,7 +347,7 @@ static void test_what_cannot_be_told_but_is_so_already_is_not_given_up(void)
     set_read_only(SDO_OBJECT(0x1017, 0), 100);
     run_start();
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
-    TEST_ASSERT_EQUAL_HEX32(0, drives_get_given_up(&drives, AXIS_X));
+    TEST_ASSERT_EQUAL_HEX32(0, takt_drives_get_given_up(&drives, AXIS_X));
 }
 
 static void test_the_same_time_between_targets_in_other_units_is_taken(void)
@@ -386,13 +386,13 @@ static void test_the_load_is_that_of_the_frames_that_were_found(void)
 {
     struct drives_load load;
     run_start();
-    drives_get_load(&drives, 0, &load);
+    takt_drives_get_load(&drives, 0, &load);
     TEST_ASSERT_EQUAL_UINT32(55 + 135 + 95 + 345 + 180, load.bits);
     setUp();
     set_rule((struct fake_rule){
         .node = 1, .object = SDO_OBJECT(0x1601, 2), .write_code = SDO_ABORT_NOT_MAPPABLE});
     run_start();
-    drives_get_load(&drives, 0, &load);
+    takt_drives_get_load(&drives, 0, &load);
     TEST_ASSERT_EQUAL_UINT32(55 + 3 * 95 + 345 + 180, load.bits);
 }
 
@@ -416,7 +416,7 @@ static void test_reports_that_do_not_come_by_sync_come_by_a_timer_of_the_cycle(v
                                     .taken_from = 254});
     run_start();
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
-    TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_SYNC_REPORT, drives_get_given_up(&drives, AXIS_Z));
+    TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_SYNC_REPORT, takt_drives_get_given_up(&drives, AXIS_Z));
     TEST_ASSERT_EQUAL_UINT32(20, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1800, 3))->value);
     TEST_ASSERT_EQUAL_UINT32(2, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1800, 5))->value);
     TEST_ASSERT_EQUAL_HEX32(0x603F0010, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1A01, 1))->value);
@@ -445,10 +445,10 @@ static void test_a_drive_that_boots_slowly_is_reset_once(void)
 {
     nodes.mute = 3;
     config.boot_timeout_cycles = 1000;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     for (unsigned i = 0; i < 900; i++)
         cycle();
-    nmt_write_heartbeat(fake_nodes_add(&nodes), 3, NMT_BOOTED);
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), 3, NMT_BOOTED);
     nodes.mute = 0;
     run_until(DRIVES_ENABLED);
     TEST_ASSERT_EQUAL_UINT(0, nodes.resets[3] - 1);
@@ -500,11 +500,11 @@ static void test_a_request_without_an_answer_is_repeated_twice_and_no_more(void)
 
 static void test_a_drive_that_boots_while_it_is_configured_is_configured_again(void)
 {
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     while (nodes.starts[1] == 0)
         cycle();
     unsigned written = nodes.written_count;
-    nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
     run_until(DRIVES_ENABLED);
     TEST_ASSERT_EQUAL_UINT(2 * written, nodes.written_count);
     for (unsigned node = 1; node <= 3; node++) {
@@ -517,7 +517,7 @@ static void test_a_drive_that_does_not_show_its_mode_is_refused(void)
 {
     set_rule((struct fake_rule){.node = 2, .object = SDO_OBJECT(0x6061, 0), .value = 1});
     run_start();
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_MODE, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_MODE, takt_drives_get_fault(&drives)->code);
     assert_text("the drive of axis Y (node 2) does not take the mode 8");
 }
 
@@ -527,9 +527,9 @@ static void test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_befor
     config.axis[3] = config.axis[2];
     config.axis[3].node = 4;
     config.rates.nominal = 500000;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_OVERLOAD, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_OVERLOAD, takt_drives_get_fault(&drives)->code);
     assert_text("the bus cannot carry a cycle: it takes 965 of 500 bits at worst, 193 percent");
     TEST_ASSERT_EQUAL_UINT(0, frames_sent);
 }
@@ -543,13 +543,13 @@ static void test_the_load_is_that_of_the_worst_stuffed_frames(void)
                                     55 + 135 + 95 + 345 + 180, 785 + 180};
     struct drives_load load;
     for (unsigned count = 1; count <= 4; count++) {
-        TEST_ASSERT_TRUE(drives_predict_load(count, &megabit, 1000, &load));
+        TEST_ASSERT_TRUE(takt_drives_predict_load(count, &megabit, 1000, &load));
         TEST_ASSERT_EQUAL_UINT32(bits[count - 1], load.bits);
         TEST_ASSERT_EQUAL_UINT32(1000, load.capacity_bits);
         TEST_ASSERT_TRUE(load.percent == bits[count - 1] / 10.0);
     }
-    TEST_ASSERT_FALSE(drives_predict_load(6, &megabit, 1000, &load));
-    TEST_ASSERT_TRUE(drives_predict_load(6, &megabit, 2000, &load));
+    TEST_ASSERT_FALSE(takt_drives_predict_load(6, &megabit, 1000, &load));
+    TEST_ASSERT_TRUE(takt_drives_predict_load(6, &megabit, 2000, &load));
 }
 
 int main(void)

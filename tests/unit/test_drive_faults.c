@@ -7,13 +7,13 @@ static void test_a_drive_in_fault_stops_all_drives_and_names_its_emergency(void)
 {
     struct emcy emcy = {.node = 2, .code = 0x8611};
     enable_at(0);
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     put_status(1, CIA402_ENABLED, 0);
     put_status(2, CIA402_FAULT_REACTION, 0);
     put_status(3, CIA402_ENABLED, 0);
     cycle();
     assert_fault(TAKT_ERROR_DRIVE_FAULT, 'Y');
-    TEST_ASSERT_TRUE(drives_get_fault(&drives)->value == 0x8611);
+    TEST_ASSERT_TRUE(takt_drives_get_fault(&drives)->value == 0x8611);
     for (unsigned node = 1; node <= 3; node++) {
         const struct can_frame *frame = get_sent(0x200 + node);
         TEST_ASSERT_EQUAL_HEX16(0x0002, little_endian_read16(frame->data));
@@ -27,11 +27,11 @@ static void test_an_emergency_that_comes_after_the_statusword_completes_the_diag
     enable_at(0);
     put_status(3, CIA402_FAULT, 0);
     cycle();
-    TEST_ASSERT_TRUE(drives_get_fault(&drives)->value == 0);
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    TEST_ASSERT_TRUE(takt_drives_get_fault(&drives)->value == 0);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     cycle();
     assert_fault(TAKT_ERROR_DRIVE_FAULT, 'Z');
-    TEST_ASSERT_TRUE(drives_get_fault(&drives)->value == 0x4310);
+    TEST_ASSERT_TRUE(takt_drives_get_fault(&drives)->value == 0x4310);
 }
 
 static void test_a_drive_that_leaves_operation_is_a_fault_that_names_its_state(void)
@@ -41,13 +41,13 @@ static void test_a_drive_that_leaves_operation_is_a_fault_that_names_its_state(v
     put_status(1, CIA402_SWITCHED_ON, 0);
     cycle();
     assert_fault(TAKT_ERROR_DRIVE_STATE, 'X');
-    TEST_ASSERT_EQUAL_STRING("switched on", drives_get_fault(&drives)->meaning);
+    TEST_ASSERT_EQUAL_STRING("switched on", takt_drives_get_fault(&drives)->meaning);
 }
 
 static void put_heartbeat(uint8_t node, enum nmt_state state)
 {
     put_all(CIA402_ENABLED, 0);
-    nmt_write_heartbeat(fake_nodes_add(&nodes), node, state);
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), node, state);
     cycle();
 }
 
@@ -68,11 +68,11 @@ static void test_an_emergency_of_a_drive_that_goes_on_is_a_fault(void)
 {
     struct emcy emcy = {.node = 3, .code = 0x8210};
     enable_at(0);
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     put_all(CIA402_ENABLED, 0);
     cycle();
     assert_fault(TAKT_ERROR_DRIVE_FAULT, 'Z');
-    TEST_ASSERT_EQUAL_STRING("PDO too short", drives_get_fault(&drives)->meaning);
+    TEST_ASSERT_EQUAL_STRING("PDO too short", takt_drives_get_fault(&drives)->meaning);
 }
 
 static void test_an_error_code_in_tpdo2_completes_the_diagnostic_too(void)
@@ -83,7 +83,7 @@ static void test_an_error_code_in_tpdo2_completes_the_diagnostic_too(void)
     struct can_frame *frame = fake_nodes_add(&nodes);
     *frame = (struct can_frame){.id = 0x283, .length = 6, .data = {0x05, 0x73}};
     cycle();
-    TEST_ASSERT_TRUE(drives_get_fault(&drives)->value == 0x7305);
+    TEST_ASSERT_TRUE(takt_drives_get_fault(&drives)->value == 0x7305);
 }
 
 static void test_a_fault_is_told_with_axis_node_code_and_meaning(void)
@@ -91,10 +91,10 @@ static void test_a_fault_is_told_with_axis_node_code_and_meaning(void)
     char text[DIAGNOSTIC_TEXT_MAX];
     struct emcy emcy = {.node = 2, .code = 0x8611};
     enable_at(0);
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     put_all(CIA402_ENABLED, 0);
     cycle();
-    (void)diagnostic_text(drives_get_fault(&drives), text);
+    (void)takt_diagnostic_text(takt_drives_get_fault(&drives), text);
     TEST_ASSERT_EQUAL_STRING("the drive of axis Y (node 2) reports 8611: following error", text);
 }
 
@@ -108,7 +108,7 @@ static void run_heartbeats(unsigned beating_ms, unsigned cycles)
         put_all(CIA402_ENABLED, 0);
         for (unsigned node = 1; node <= 3 && k % 10 == 0; node++)
             if (node != 2 || k < beating_ms)
-                nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
+                takt_nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
         cycle();
     }
 }
@@ -119,7 +119,7 @@ static void test_three_missed_heartbeats_are_a_fault(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
     run_heartbeats(100, 200);
     assert_fault(TAKT_ERROR_DRIVE_HEARTBEAT, 'Y');
-    TEST_ASSERT_TRUE(drives_get_fault(&drives)->value == 31);
+    TEST_ASSERT_TRUE(takt_drives_get_fault(&drives)->value == 31);
 }
 
 static void test_the_controller_sends_heartbeats_of_its_own(void)
@@ -226,7 +226,7 @@ static void test_a_lagging_axis_is_named_with_its_lag(void)
         cycle();
     }
     assert_fault(TAKT_ERROR_DRIVE_FOLLOWING, 'Y');
-    TEST_ASSERT_TRUE(fabs(drives_get_fault(&drives)->value - 0.501) < 1e-12);
+    TEST_ASSERT_TRUE(fabs(takt_drives_get_fault(&drives)->value - 0.501) < 1e-12);
 }
 
 static void test_a_setpoint_that_the_bus_refuses_is_a_fault(void)
@@ -371,7 +371,7 @@ static void test_a_drive_that_only_warns_follows_to_rest(void)
     struct drives_config config = time_to_stop();
     boot(&config);
     run_delayed(DRIVES_LATENCY_CYCLES, 50);
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     for (unsigned i = 0; i < 20; i++) {
         setpoint.at[AXIS_X] = setpoint.at[AXIS_Y] += 0.01;
         put_all(CIA402_ENABLED, (int32_t)lround(1000 * setpoint.at[AXIS_X]));
@@ -386,7 +386,7 @@ static void test_a_warning_from_a_drive_that_falls_silent_is_a_loss(void)
     struct drives_config config = time_to_stop();
     boot(&config);
     run_delayed(DRIVES_LATENCY_CYCLES, 50);
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     for (unsigned i = 0; i <= DRIVES_LATENCY_CYCLES; i++) {
         setpoint.at[AXIS_Y] += 0.01;
         cycle();
@@ -408,7 +408,7 @@ static enum drives_state state_after_warning_and_lag(int32_t before_inc, int32_t
         cycle();
     }
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     setpoint.at[AXIS_Y] = 1e-6; /* the path goes on */
     for (unsigned i = 0; i < 2; i++) {
         put_all(CIA402_ENABLED, 0);
@@ -440,10 +440,10 @@ static void test_a_refused_setpoint_ends_the_stop_on_the_path(void)
 static void test_all_drives_brake_when_asked_to_stop_at_once(void)
 {
     enable_at(0);
-    drives_stop_at_once(&drives, TAKT_ERROR_EMERGENCY_STOP);
+    takt_drives_stop_at_once(&drives, TAKT_ERROR_EMERGENCY_STOP);
     cycle();
     TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, drives_get_state(&drives));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_EMERGENCY_STOP, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_EMERGENCY_STOP, takt_drives_get_fault(&drives)->code);
     for (unsigned node = 1; node <= 3; node++)
         TEST_ASSERT_EQUAL_HEX16(0x0002, little_endian_read16(get_sent(0x200 + node)->data));
 }

@@ -27,9 +27,9 @@ static void test_both_drives_of_an_axis_are_enabled(void)
     run_start();
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
     drives_get_actual(&drives, &actual);
-    drives_get_statuswords(&drives, statusword);
+    takt_drives_get_statuswords(&drives, statusword);
     TEST_ASSERT_EQUAL_DOUBLE(2, actual.at[AXIS_Y]);
-    TEST_ASSERT_EQUAL_HEX16(cia402_statusword(CIA402_ENABLED) | CIA402_FOLLOWS_TARGET,
+    TEST_ASSERT_EQUAL_HEX16(takt_cia402_statusword(CIA402_ENABLED) | CIA402_FOLLOWS_TARGET,
                             statusword[AXIS_Y]);
 }
 
@@ -38,7 +38,7 @@ static void test_drives_too_far_apart_are_not_brought_together(void)
     shown_inc = 2000;
     add_second(1500, 0.5); /* 2 mm and 1.333 mm */
     run_start();
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SKEW, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SKEW, takt_drives_get_fault(&drives)->code);
     assert_text("axis Y2 (node 4) is 0.666667 mm off the other drive of its gantry");
 }
 
@@ -55,7 +55,7 @@ static void test_drives_that_part_brake_at_once(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
     shown_inc = 1200; /* 1.2 mm and 1.091 mm */
     cycle();
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SKEW, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SKEW, takt_drives_get_fault(&drives)->code);
     TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, drives_get_state(&drives));
 }
 

@@ -31,7 +31,7 @@ static void run_until_homing(unsigned node)
 static void test_homing_is_configured_only_where_it_is_wanted(void)
 {
     home_axes(0, 1, 0);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(2);
     assert_told(2, SDO_OBJECT(0x6098, 0), 17);
     assert_told(2, SDO_OBJECT(0x6099, 1), 20000);
@@ -44,7 +44,7 @@ static void test_homing_is_configured_only_where_it_is_wanted(void)
 static void test_axes_are_homed_in_their_order_and_those_of_one_order_together(void)
 {
     home_axes(2, 2, 1);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(3);
     for (unsigned i = 0; i < 50; i++) {
         cycle();
@@ -70,7 +70,7 @@ static void test_an_attained_bit_from_before_does_not_count_while_the_drive_may_
 {
     home_axes(1, 0, 0);
     shown_bits[1] = 0x1400;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(1);
     for (unsigned i = 0; i < 3; i++)
         cycle();
@@ -85,7 +85,7 @@ static void test_an_attained_bit_from_before_does_not_count_while_the_drive_may_
 static void test_a_drive_that_has_been_homed_is_told_to_stay_where_it_now_is(void)
 {
     home_axes(0, 0, 1);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(3);
     shown_bits[3] = 0x1400;
     shown_inc = -1500;
@@ -99,7 +99,7 @@ static void test_a_drive_that_takes_the_home_offset_for_its_position_is_told_tha
 {
     home_axes(0, 0, 1);
     config.axis[2].homing.offset_is_position = true;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(3);
     assert_told(3, SDO_OBJECT(0x607C, 0), (uint32_t)-1500);
     shown_inc = -1500;
@@ -110,12 +110,12 @@ static void test_a_drive_that_takes_the_home_offset_for_its_position_is_told_tha
 static void test_a_home_with_the_other_sign_is_a_fault_that_says_so(void)
 {
     home_axes(0, 0, 1);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(3);
     shown_inc = 1500 + 400; /* 0.4 mm: from 20 mm/s at 500 mm/s2 */
     shown_bits[3] = 0x1400;
     run_until(DRIVES_BRAKING);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOME_OFFSET, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOME_OFFSET, takt_drives_get_fault(&drives)->code);
     assert_text(
         "after homing axis Z (node 3) is at 1.9 mm: change home_offset_is_position for this drive");
 }
@@ -124,7 +124,7 @@ static void test_a_home_near_zero_has_no_sign(void)
 {
     home_axes(0, 0, 1);
     config.axis[2].homing.offset_mm = 0.1;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(3);
     shown_inc = -100;
     shown_bits[3] = 0x1400;
@@ -134,28 +134,28 @@ static void test_a_home_near_zero_has_no_sign(void)
 static void test_a_homing_error_is_told_with_the_statusword(void)
 {
     home_axes(1, 0, 0);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(1);
     shown_bits[1] = 0x2000;
     run_until(DRIVES_BRAKING);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOMING, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOMING, takt_drives_get_fault(&drives)->code);
     assert_text("the drive of axis X (node 1) reports an error while homing: statusword 2027");
 }
 
 static void test_homing_that_does_not_end_is_given_up(void)
 {
     home_axes(0, 0, 1);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(3);
     run_until(DRIVES_BRAKING);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOMING_SLOW, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOMING_SLOW, takt_drives_get_fault(&drives)->code);
     assert_text("homing of axis Z (node 3) has not ended within 0.3 s");
 }
 
 static void test_a_fault_while_homing_stops_all_axes(void)
 {
     home_axes(1, 1, 1);
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     run_until_homing(1);
     run_until_homing(2);
     run_until_homing(3);
@@ -173,7 +173,7 @@ static void test_axes_that_are_homed_already_are_not_homed_again(void)
     config.homed = true;
     run_start();
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
-    TEST_ASSERT_TRUE(drives_are_homed(&drives));
+    TEST_ASSERT_TRUE(takt_drives_are_homed(&drives));
 }
 
 int main(void)

@@ -41,7 +41,7 @@ static void put_inputs(void)
     *fake_nodes_add(&nodes) =
         (struct can_frame){.id = PDO_TPDO1_FUNCTION + IO_NODE, .length = 1, .data = {levels}};
     if (cycles_run % 100 == 0)
-        nmt_write_heartbeat(fake_nodes_add(&nodes), IO_NODE, NMT_OPERATIONAL);
+        takt_nmt_write_heartbeat(fake_nodes_add(&nodes), IO_NODE, NMT_OPERATIONAL);
 }
 
 static void run(unsigned cycles)
@@ -50,10 +50,10 @@ static void run(unsigned cycles)
     for (unsigned k = 0; k < cycles; k++) {
         put_statuses();
         put_inputs();
-        drives_receive(&drives, &io_port);
-        drives_sync(&drives, &io_port);
-        drives_send(&drives, &io_port, &nowhere);
-        drives_send_outputs(&drives, &io_port, &outputs);
+        takt_drives_receive(&drives, &io_port);
+        takt_drives_sync(&drives, &io_port);
+        takt_drives_send(&drives, &io_port, &nowhere);
+        takt_drives_send_outputs(&drives, &io_port, &outputs);
         cycles_run++;
     }
 }
@@ -75,7 +75,7 @@ static void enable(const struct io_wiring *wired)
     config.wiring = &wiring;
     frames_of_io = 0;
     outputs = (struct outputs){0};
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     while (drives_get_state(&drives) == DRIVES_STARTING && cycles_run < 2 * START_CYCLES)
         run(1);
 }
@@ -94,7 +94,7 @@ static void test_drives_get_no_torque_before_the_inputs_are_known(void)
 {
     levels = 0;
     enable(&(const struct io_wiring){.input = {IO_STOP}});
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_STOP, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_STOP, takt_drives_get_fault(&drives)->code);
     assert_text("the stop input, bit 0 of I/O node 20, is open");
     for (unsigned node = 1; node <= DRIVES; node++)
         TEST_ASSERT_NOT_EQUAL(CIA402_ENABLE_OPERATION, control[node]);
@@ -129,11 +129,11 @@ static void test_inputs_are_the_lines_they_are_wired_to_and_others_stay(void)
         .input = {IO_PROGRAM + 31, IO_FREE, IO_PROGRAM + 2, IO_INVERTED | (IO_PROGRAM + 1)}});
     inputs.digital = 0x0F;
     run(1);
-    drives_add_inputs(&drives, &inputs);
+    takt_drives_add_inputs(&drives, &inputs);
     TEST_ASSERT_EQUAL_HEX32(0x8000000B, inputs.digital);
     levels = 0x0C;
     run(1);
-    drives_add_inputs(&drives, &inputs);
+    takt_drives_add_inputs(&drives, &inputs);
     TEST_ASSERT_EQUAL_HEX32(0x0000000D, inputs.digital);
 }
 
@@ -148,7 +148,7 @@ static void check_stop(uint8_t bit, uint8_t high, uint8_t low, enum takt_error e
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
     levels = low;
     run(1);
-    TEST_ASSERT_EQUAL_INT(error, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(error, takt_drives_get_fault(&drives)->code);
     TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, drives_get_state(&drives));
     for (unsigned node = 1; node <= DRIVES; node++)
         TEST_ASSERT_EQUAL_HEX16(CIA402_QUICK_STOP_NOW, control[node]);
@@ -171,7 +171,7 @@ static void test_an_axis_can_be_driven_off_a_limit_switch(void)
     run(5);
     levels = 0;
     run(1);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_LIMIT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_LIMIT, takt_drives_get_fault(&drives)->code);
 }
 
 static void test_a_node_alone_is_started_too(void)
@@ -200,7 +200,7 @@ static void check_answer(struct fake_rule rule, enum takt_error error, const cha
     rule.node = IO_NODE;
     set_rule(rule);
     enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
-    TEST_ASSERT_EQUAL_INT(error, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(error, takt_drives_get_fault(&drives)->code);
     assert_text(text);
 }
 
@@ -225,7 +225,7 @@ static void test_a_node_without_heartbeat_and_guarding_is_refused(void)
     set_rule((struct fake_rule){
         .node = IO_NODE, .object = SDO_OBJECT(0x100C, 0), .abort_code = SDO_ABORT_READ_ONLY});
     enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_REFUSES, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_REFUSES, takt_drives_get_fault(&drives)->code);
     assert_text(
         "I/O node 20, object 100C:00, refuses with abort code 06010002: object can only be read");
 }
@@ -255,14 +255,14 @@ static void test_a_node_without_a_heartbeat_is_guarded(void)
 static void test_an_answer_whose_toggle_bit_stays_is_none(void)
 {
     enable_guarded(0);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, takt_drives_get_fault(&drives)->code);
 }
 
 static void test_a_node_that_is_not_there_is_named(void)
 {
     nodes.mute = IO_NODE;
     enable(&(const struct io_wiring){.input = {IO_STOP}});
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_ABSENT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_ABSENT, takt_drives_get_fault(&drives)->code);
     assert_text("I/O node 20 has not booted within 1 s");
 }
 
@@ -289,18 +289,18 @@ static void test_a_node_that_fails_in_operation_is_a_fault(void)
 {
     const struct emcy emcy = {.node = IO_NODE, .code = 0x2320};
     enable_with_stop();
-    emcy_write(fake_nodes_add(&nodes), &emcy);
+    takt_emcy_write(fake_nodes_add(&nodes), &emcy);
     run(1);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_FAULT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_FAULT, takt_drives_get_fault(&drives)->code);
     enable_with_stop();
-    nmt_write_heartbeat(fake_nodes_add(&nodes), IO_NODE, NMT_STOPPED);
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), IO_NODE, NMT_STOPPED);
     run(1);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_LEFT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_LEFT, takt_drives_get_fault(&drives)->code);
     assert_text("I/O node 20 is not operational any more, but stopped");
     enable_with_stop();
     nodes.starts[IO_NODE] = 0; /* neither inputs nor heartbeats come any more */
     run(22);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_SILENT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_SILENT, takt_drives_get_fault(&drives)->code);
     assert_text("I/O node 20 has sent no inputs for 21 ms");
 }
 
@@ -311,7 +311,7 @@ static void test_a_node_without_inputs_is_watched_by_its_heartbeat(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
     nodes.starts[IO_NODE] = 0;
     run(401);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, takt_drives_get_fault(&drives)->code);
 }
 
 static void enable_analogues(uint32_t count, uint32_t first)
@@ -368,9 +368,9 @@ static void test_analogue_outputs_load_every_cycle(void)
     wired.analogue[0] = 0x21;
     struct drives_traffic traffic = {
         .count = 3, .wiring = &plain, .io_count = 1, .rates = {1000000, 0}};
-    (void)drives_predict_whole_load(&traffic, 1000, &without);
+    (void)takt_drives_predict_whole_load(&traffic, 1000, &without);
     traffic.wiring = &wired;
-    (void)drives_predict_whole_load(&traffic, 1000, &with);
+    (void)takt_drives_predict_whole_load(&traffic, 1000, &with);
     TEST_ASSERT_EQUAL_UINT32(without.bits + 55 + 10 * 4, with.bits);
 }
 

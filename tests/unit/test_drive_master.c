@@ -156,11 +156,11 @@ static void test_frames_of_a_cycle_are_those_that_are_sent_and_answered(void)
 {
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
     static const uint8_t four[] = {0, 8, 8, 6, 6, 6, 6, 6, 1}, three[] = {0, 8, 4, 6, 6, 6, 6, 1};
-    TEST_ASSERT_EQUAL_UINT(9, drives_cycle_frames(4, TARGET_PDO_PAIR, true, length));
+    TEST_ASSERT_EQUAL_UINT(9, takt_drives_cycle_frames(4, TARGET_PDO_PAIR, true, length));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(four, length, 9);
-    TEST_ASSERT_EQUAL_UINT(8, drives_cycle_frames(3, TARGET_PDO_PAIR, true, length));
+    TEST_ASSERT_EQUAL_UINT(8, takt_drives_cycle_frames(3, TARGET_PDO_PAIR, true, length));
     TEST_ASSERT_EQUAL_HEX8_ARRAY(three, length, 8);
-    TEST_ASSERT_TRUE(drives_cycle_frames(AXIS_COUNT, TARGET_PDO_PAIR, true, length) <=
+    TEST_ASSERT_TRUE(takt_drives_cycle_frames(AXIS_COUNT, TARGET_PDO_PAIR, true, length) <=
                      DRIVES_CYCLE_FRAMES_MAX);
 }
 

@@ -22,11 +22,11 @@ static void run_probe(void)
 static struct point probe(bool falls)
 {
     struct point latched = nowhere;
-    drives_arm_probe(&drives, falls);
+    takt_drives_arm_probe(&drives, falls);
     run_probe();
-    drives_read_probe(&drives);
+    takt_drives_read_probe(&drives);
     run_probe();
-    drives_get_latched(&drives, &latched);
+    takt_drives_get_latched(&drives, &latched);
     return latched;
 }
 
@@ -68,12 +68,12 @@ static void test_a_drive_that_refuses_is_told_and_not_asked_again(void)
 {
     set_rule((struct fake_rule){.object = SDO_OBJECT(0x60B8, 0), .abort_code = 0x06020000});
     start();
-    TEST_ASSERT_EQUAL_HEX32(0, drives_get_all_given_up(&drives) & 1u << DRIVES_NO_TOUCH_PROBE);
-    TEST_ASSERT_TRUE(drives_have_probe(&drives));
+    TEST_ASSERT_EQUAL_HEX32(0, takt_drives_get_all_given_up(&drives) & 1u << DRIVES_NO_TOUCH_PROBE);
+    TEST_ASSERT_TRUE(takt_drives_have_probe(&drives));
     TEST_ASSERT_TRUE(probe(false).at[AXIS_X] == 7);
-    TEST_ASSERT_EQUAL_HEX32(1u << DRIVES_NO_TOUCH_PROBE,
-                            drives_get_given_up(&drives, AXIS_Z) & 1u << DRIVES_NO_TOUCH_PROBE);
-    TEST_ASSERT_FALSE(drives_have_probe(&drives));
+    TEST_ASSERT_EQUAL_HEX32(1u << DRIVES_NO_TOUCH_PROBE, takt_drives_get_given_up(&drives, AXIS_Z) &
+                                                             1u << DRIVES_NO_TOUCH_PROBE);
+    TEST_ASSERT_FALSE(takt_drives_have_probe(&drives));
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
 }
 
@@ -100,8 +100,8 @@ static void test_what_was_latched_before_is_forgotten(void)
 static void test_a_fault_ends_it(void)
 {
     start();
-    drives_arm_probe(&drives, false);
-    drives_stop_at_once(&drives, TAKT_ERROR_DRIVE_FAULT);
+    takt_drives_arm_probe(&drives, false);
+    takt_drives_stop_at_once(&drives, TAKT_ERROR_DRIVE_FAULT);
     TEST_ASSERT_FALSE(drives_probe_is_busy(&drives));
 }
 

@@ -35,7 +35,7 @@ static void test_the_target_is_a_velocity_in_the_frame_of_its_pair(void)
     run_start();
     assert_told(1, SDO_OBJECT(0x1601, 1), 0x60FF0020);
     assert_told(2, SDO_OBJECT(0x1601, 2), 0x60FF0020);
-    TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_POSITION, drives_get_given_up(&drives, AXIS_Y));
+    TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_POSITION, takt_drives_get_given_up(&drives, AXIS_Y));
 }
 
 static void test_ramps_of_profile_velocity_are_twice_those_of_setpoints(void)
@@ -72,9 +72,9 @@ static void test_ramps_that_a_drive_keeps_are_given_up_or_too_slow(void)
         run_start();
         TEST_ASSERT_EQUAL(rows[i].is_enough, drives_get_state(&drives) == DRIVES_ENABLED);
         TEST_ASSERT_EQUAL(rows[i].is_enough,
-                          drives_get_fault(&drives)->code != TAKT_ERROR_DRIVE_REFUSES);
+                          takt_drives_get_fault(&drives)->code != TAKT_ERROR_DRIVE_REFUSES);
         TEST_ASSERT_EQUAL(rows[i].is_enough,
-                          drives_get_given_up(&drives, AXIS_X) >> DRIVES_NO_RAMPS & 1);
+                          takt_drives_get_given_up(&drives, AXIS_X) >> DRIVES_NO_RAMPS & 1);
     }
 }
 
@@ -84,7 +84,7 @@ static void test_a_drive_that_would_go_on_without_a_controller_is_refused(void)
     set_rule((struct fake_rule){
         .node = 2, .object = SDO_OBJECT(0x1016, 1), .abort_code = SDO_ABORT_NO_OBJECT});
     run_start();
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_UNWATCHED, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_UNWATCHED, takt_drives_get_fault(&drives)->code);
     assert_text("the drive of axis Y (node 2), object 1016:01, follows velocities, and would go on "
                 "if the controller fell silent");
 }
@@ -93,7 +93,7 @@ static void test_a_drive_that_stays_is_told_no_velocity(void)
 {
     let_modes_be(0x120);
     shown_inc = 5000;
-    drives_init(&drives, &config);
+    takt_drives_init(&drives, &config);
     do {
         TEST_ASSERT_EQUAL_INT32(0, target_of_3);
         cycle();
@@ -111,11 +111,11 @@ static void run_cycle(double scale)
 {
     position_mm += velocity_mm_s * 1e-3;
     velocity_mm_s = coming_mm_s;
-    shown_inc = (int32_t)maths_round(position_mm * SCALE);
+    shown_inc = (int32_t)takt_maths_round(position_mm * SCALE);
     put_statuses();
-    drives_receive(&drives, &port);
-    drives_sync(&drives, &port);
-    drives_send(&drives, &port, &setpoint);
+    takt_drives_receive(&drives, &port);
+    takt_drives_sync(&drives, &port);
+    takt_drives_send(&drives, &port, &setpoint);
     coming_mm_s = target_of_3 / scale;
     cycles_run++;
 }
@@ -176,7 +176,7 @@ static void test_a_velocity_beyond_32_bits_is_a_fault(void)
     start_loop(0);
     setpoint.at[AXIS_Z] = 0.1;
     run_cycle(1e9);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_RANGE, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_RANGE, takt_drives_get_fault(&drives)->code);
 }
 
 int main(void)

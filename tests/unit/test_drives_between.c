@@ -29,8 +29,8 @@ static void take(int k)
 {
     double at[3] = {0, 0, 0};
     if (k > 0)
-        between_at(piece, 1, at);
-    between_take(&between, k > 0 ? between.target_mm[2] : 0, course(k), piece);
+        takt_between_at(piece, 1, at);
+    takt_between_take(&between, k > 0 ? between.target_mm[2] : 0, course(k), piece);
 }
 
 static void test_position_velocity_and_acceleration_are_continuous(void)
@@ -39,10 +39,10 @@ static void test_position_velocity_and_acceleration_are_continuous(void)
     for (int k = 0; k < 300; k++) {
         double begin[3];
         take(k);
-        between_at(piece, 0, begin);
+        takt_between_at(piece, 0, begin);
         for (int i = 0; i < 3; i++)
             TEST_ASSERT_DOUBLE_WITHIN(1e-11, end[i], begin[i]);
-        between_at(piece, 1, end);
+        takt_between_at(piece, 1, end);
         TEST_ASSERT_DOUBLE_WITHIN(1e-11, course(k - 1), end[0]);
     }
 }
@@ -54,7 +54,7 @@ static void test_between_targets_it_follows_the_course_a_cycle_late(void)
     for (int k = 0; k < 300; k++) {
         double at[3];
         take(k);
-        between_at(piece, 0.5, at);
+        takt_between_at(piece, 0.5, at);
         if (k > 5) {
             off = fmax(off, fabs(at[0] - course(k - 1.5)));
             straight = fmax(straight, fabs((course(k - 2) + course(k - 1)) / 2 - course(k - 1.5)));
@@ -67,12 +67,12 @@ static void test_between_targets_it_follows_the_course_a_cycle_late(void)
 static void test_a_parabola_stays_one(void)
 {
     double at[3];
-    between_take(&between, 0, 0, piece);
+    takt_between_take(&between, 0, 0, piece);
     for (int k = 1; k < 20; k++)
-        between_take(&between, between.target_mm[2], 0.5 * k * k, piece);
+        takt_between_take(&between, between.target_mm[2], 0.5 * k * k, piece);
     for (int i = 0; i <= 8; i++) {
         double u = i / 8.0;
-        between_at(piece, u, at);
+        takt_between_at(piece, u, at);
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.5 * (17 + u) * (17 + u), at[0]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 17 + u, at[1]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 1, at[2]);
@@ -84,14 +84,14 @@ static void test_it_begins_at_rest_where_somebody_else_has_left_the_command(void
     double at[3];
     take(0);
     take(1);
-    between_take(&between, 7, 7.5, piece);
-    between_at(piece, 0, at);
+    takt_between_take(&between, 7, 7.5, piece);
+    takt_between_at(piece, 0, at);
     TEST_ASSERT_EQUAL_DOUBLE(7, at[0]);
     TEST_ASSERT_EQUAL_DOUBLE(0, at[1]);
-    between_at(piece, 1, at);
+    takt_between_at(piece, 1, at);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 7, at[0]);
-    between_take(&between, 7, 7.5, piece);
-    between_at(piece, 1, at);
+    takt_between_take(&between, 7, 7.5, piece);
+    takt_between_at(piece, 1, at);
     TEST_ASSERT_DOUBLE_WITHIN(1e-14, 7.5, at[0]);
 }
 

@@ -323,15 +323,15 @@ static void test_a_reversal_is_without_a_step_of_velocity_or_acceleration(void)
     const struct motor_port motor = {.turn = stands, .sense = look, .context = &encoder_mm};
     const struct compensation_way told = {0.01, 0.001, ACCELERATION, STEP_S};
     uint32_t seed = 1;
-    compensation_init(&c, &motor);
-    compensation_set_backlash(&c, 0.03);
-    struct motor_port port = compensation_get_port(&c);
+    takt_compensation_init(&c, &motor);
+    takt_compensation_set_backlash(&c, 0.03);
+    struct motor_port port = takt_compensation_get_port(&c);
     for (unsigned i = 0; i < 400000; i++) {
         struct compensation_way way = told;
         seed = seed * 1664525 + 1013904223;
         way.way_mm *= seed >> 24 < 2 ? -1 : seed >> 24 < 4 ? 1 : 0;
         if (i % 4 == 0)
-            compensation_follow(&c, &way);
+            takt_compensation_follow(&c, &way);
         memmove(x, x + 1, sizeof x - sizeof x[0]);
         x[3] = port.turn(port.context, 0, STEP_S);
         TEST_ASSERT_TRUE(fabs(x[3] - 1) <= 0.015 * 1.0001);
@@ -343,7 +343,7 @@ static void test_a_reversal_is_without_a_step_of_velocity_or_acceleration(void)
     (void)printf("%.1f mm/s2 of %.0f, changes in a step by %.1f\n", most_mm_s2, ACCELERATION,
                  most_change_mm_s2);
     TEST_ASSERT_TRUE(most_mm_s2 <= ACCELERATION && most_mm_s2 > ACCELERATION / 2);
-    TEST_ASSERT_TRUE(most_change_mm_s2 <= fade_jerk_per_s3(&c.pace) * 0.03 * STEP_S);
+    TEST_ASSERT_TRUE(most_change_mm_s2 <= takt_fade_jerk_per_s3(&c.pace) * 0.03 * STEP_S);
 }
 
 static void test_without_a_table_or_backlash_the_motor_is_the_axis_to_the_last_bit(void)
@@ -352,14 +352,14 @@ static void test_without_a_table_or_backlash_the_motor_is_the_axis_to_the_last_b
     struct motor_sense sense;
     double encoder_mm = 0;
     const struct motor_port motor = {.turn = stands, .sense = look, .context = &encoder_mm};
-    compensation_init(&c, &motor);
+    takt_compensation_init(&c, &motor);
     c.is_homed = true;
     c.origin_mm = 0.1;
-    struct motor_port port = compensation_get_port(&c);
+    struct motor_port port = takt_compensation_get_port(&c);
     for (int i = -1000; i < 1000; i++) {
         const struct compensation_way way = {i, 0.001, ACCELERATION, STEP_S};
         encoder_mm = i / 3.0;
-        compensation_follow(&c, &way);
+        takt_compensation_follow(&c, &way);
         TEST_ASSERT_TRUE(port.turn(port.context, 0, STEP_S) == encoder_mm);
         port.sense(port.context, 0, &sense);
         TEST_ASSERT_TRUE(sense.encoder_mm == encoder_mm);
@@ -370,15 +370,15 @@ static void test_without_a_table_or_backlash_the_motor_is_the_axis_to_the_last_b
 static void test_a_way_back_of_less_than_the_resolution_is_none(void)
 {
     struct compensation c;
-    compensation_init(&c, NULL);
-    compensation_set_backlash(&c, 0.02);
+    takt_compensation_init(&c, NULL);
+    takt_compensation_set_backlash(&c, 0.02);
     for (int i = 0; i < 100; i++) {
         const struct compensation_way way = {i % 2 ? -0.0009 : 0.001, 0.001, ACCELERATION, STEP_S};
-        compensation_follow(&c, &way);
+        takt_compensation_follow(&c, &way);
         TEST_ASSERT_TRUE(i < 20 || c.direction == 1);
     }
     const struct compensation_way back = {-0.0011, 0.001, ACCELERATION, STEP_S};
-    compensation_follow(&c, &back);
+    takt_compensation_follow(&c, &back);
     TEST_ASSERT_TRUE(c.direction == -1);
 }
 

@@ -31,7 +31,7 @@ static void read_sheet(const char *text)
 static const struct object_row *row_of(uint16_t index, uint8_t sub)
 {
     bool has_index;
-    const struct object_row *row = dictionary_find(&sheet, index, sub, &has_index);
+    const struct object_row *row = takt_dictionary_find(&sheet, index, sub, &has_index);
     TEST_ASSERT_NOT_NULL(row);
     return row;
 }
@@ -280,7 +280,7 @@ static void test_any_bytes_are_read_or_refused(void)
         for (unsigned i = 0; i < sheet.count; i++) {
             const struct object_row *row = &sheet.row[i];
             uint32_t object = (uint32_t)row->index << 16 | (uint32_t)row->sub << 8 |
-                              8 * object_type_bytes((enum object_type)row->type);
+                              8 * takt_object_type_bytes((enum object_type)row->type);
             (void)virtual_drive_write_object(&lone.drive, object, draw(300));
         }
         virtual_drive_step(&lone.drive, LONE_CYCLE_NS);

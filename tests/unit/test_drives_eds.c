@@ -77,12 +77,12 @@ static void name_section(const struct object_row *row, char name[32])
 
 static const struct object_row *row_at(unsigned i)
 {
-    return &object_table[i];
+    return &takt_object_table[i];
 }
 
 static void test_the_table_is_in_order_and_every_index_begins_with_its_kind(void)
 {
-    for (unsigned i = 1; i < object_table_count; i++) {
+    for (unsigned i = 1; i < takt_object_table_count; i++) {
         const struct object_row *before = row_at(i - 1), *row = row_at(i);
         bool same = row->index == before->index;
         TEST_ASSERT_TRUE(row->index > before->index || (same && row->sub > before->sub));
@@ -97,13 +97,13 @@ static void test_every_entry_is_found_and_nothing_else(void)
     unsigned found = 0;
     for (unsigned index = 0; index <= 0xFFFF; index++)
         for (unsigned sub = 0; sub < 128; sub++)
-            found += object_table_find((uint16_t)index, (uint8_t)sub, &has_index) != NULL;
-    TEST_ASSERT_EQUAL_UINT(object_table_count, found);
-    TEST_ASSERT_NULL(object_table_find(0x6099, 3, &has_index));
+            found += takt_object_table_find((uint16_t)index, (uint8_t)sub, &has_index) != NULL;
+    TEST_ASSERT_EQUAL_UINT(takt_object_table_count, found);
+    TEST_ASSERT_NULL(takt_object_table_find(0x6099, 3, &has_index));
     TEST_ASSERT_TRUE(has_index);
-    TEST_ASSERT_NULL(object_table_find(0x6100, 0, &has_index));
+    TEST_ASSERT_NULL(takt_object_table_find(0x6100, 0, &has_index));
     TEST_ASSERT_FALSE(has_index);
-    TEST_ASSERT_NULL(object_table_find(0xFFFF, 0xFF, &has_index));
+    TEST_ASSERT_NULL(takt_object_table_find(0xFFFF, 0xFF, &has_index));
     TEST_ASSERT_FALSE(has_index);
 }
 
@@ -120,7 +120,7 @@ static void test_the_objects_of_the_profile_are_there(void)
         0x60C0, 0x60C1, 0x60C2, 0x60C4, 0x60F4, 0x60FD, 0x60FE, 0x6502};
     bool has_index;
     for (unsigned i = 0; i < sizeof indices / sizeof indices[0]; i++) {
-        TEST_ASSERT_NOT_NULL(object_table_find(indices[i], 0, &has_index));
+        TEST_ASSERT_NOT_NULL(takt_object_table_find(indices[i], 0, &has_index));
     }
     TEST_ASSERT_EQUAL_HEX32(0x00020192, lone_read(&lone, 0x1000, 0));
     TEST_ASSERT_EQUAL_HEX32(0x3ED, lone_read(&lone, 0x6502, 0));
@@ -129,12 +129,12 @@ static void test_the_objects_of_the_profile_are_there(void)
 /* Two entries in one place of memory would change each other. */
 static void test_no_two_numbers_share_memory(void)
 {
-    for (unsigned i = 0; i < object_table_count; i++) {
+    for (unsigned i = 0; i < takt_object_table_count; i++) {
         const struct object_row *a = row_at(i);
-        unsigned a_bytes = object_type_bytes((enum object_type)a->type);
+        unsigned a_bytes = takt_object_type_bytes((enum object_type)a->type);
         for (unsigned k = 0; k < i; k++) {
             const struct object_row *b = row_at(k);
-            unsigned b_bytes = object_type_bytes((enum object_type)b->type);
+            unsigned b_bytes = takt_object_type_bytes((enum object_type)b->type);
             bool apart = a->field + a_bytes <= b->field || b->field + b_bytes <= a->field;
             TEST_ASSERT_TRUE(apart || a->flags & OBJECT_FIXED || b->flags & OBJECT_FIXED);
         }
@@ -144,7 +144,7 @@ static void test_no_two_numbers_share_memory(void)
 /* Tools find objects by their names. */
 static void test_names_are_unique(void)
 {
-    for (unsigned i = 0; i < object_table_count; i++) {
+    for (unsigned i = 0; i < takt_object_table_count; i++) {
         const struct object_row *a = row_at(i);
         for (unsigned k = 0; k < i; k++) {
             const struct object_row *b = row_at(k);
@@ -166,12 +166,12 @@ static void test_the_sheet_has_exactly_the_entries_of_the_table(void)
     unsigned sections = 0;
     char name[32];
     size_t length;
-    for (unsigned i = 0; i < object_table_count; i++) {
+    for (unsigned i = 0; i < takt_object_table_count; i++) {
         name_section(row_at(i), name);
         TEST_ASSERT_NOT_NULL_MESSAGE(find_section(name, &length), name);
         sections += row_at(i)->kind == OBJECT_ARRAY || row_at(i)->kind == OBJECT_RECORD;
     }
-    sections += object_table_count + 6;
+    sections += takt_object_table_count + 6;
     for (const char *at = sheet; (at = strstr(at, "[")) != NULL; at++)
         sections -= at == sheet || at[-1] == '\n';
     TEST_ASSERT_EQUAL_UINT(0, sections);
@@ -184,7 +184,7 @@ static void test_the_lists_of_the_sheet_name_every_index_once(void)
     unsigned listed = 0, indices = 0;
     char key[16];
     bool has_index;
-    for (unsigned i = 0; i < object_table_count; i++)
+    for (unsigned i = 0; i < takt_object_table_count; i++)
         indices += row_at(i)->kind != OBJECT_SAME;
     for (unsigned i = 0; i < 3; i++) {
         unsigned long count = strtoul(find_value(lists[i], "SupportedObjects"), NULL, 10);
@@ -193,7 +193,7 @@ static void test_the_lists_of_the_sheet_name_every_index_once(void)
             (void)snprintf(key, sizeof key, "%u", n);
             unsigned long index = strtoul(find_value(lists[i], key), NULL, 16);
             TEST_ASSERT_TRUE(index > before);
-            TEST_ASSERT_NOT_NULL(object_table_find((uint16_t)index, 0, &has_index));
+            TEST_ASSERT_NOT_NULL(takt_object_table_find((uint16_t)index, 0, &has_index));
             before = index;
         }
         listed += (unsigned)count;
@@ -211,7 +211,7 @@ static const char *access_of(const struct object_row *row)
 static void test_type_access_and_mapping_are_those_of_the_table(void)
 {
     char name[32], text[16];
-    for (unsigned i = 0; i < object_table_count; i++) {
+    for (unsigned i = 0; i < takt_object_table_count; i++) {
         const struct object_row *row = row_at(i);
         name_section(row, name);
         (void)snprintf(text, sizeof text, "0x%04X", row->type);
@@ -234,7 +234,7 @@ static long long sheet_number(const char *text)
 
 static long long signed_value(const struct object_row *row, uint32_t raw)
 {
-    return object_type_value((enum object_type)row->type, raw);
+    return takt_object_type_value((enum object_type)row->type, raw);
 }
 
 /* What the sheet says a fresh drive holds, the drive answers. */
@@ -243,11 +243,11 @@ static void test_default_values_are_what_the_drive_answers_at_power_on(void)
     char name[32];
     unsigned compared = 0;
     lone_step(&lone, 100); /* clocks have gone on */
-    for (unsigned i = 0; i < object_table_count; i++) {
+    for (unsigned i = 0; i < takt_object_table_count; i++) {
         const struct object_row *row = row_at(i);
         name_section(row, name);
         const char *text = find_value(name, "DefaultValue");
-        if (text[0] == '\0' || object_type_bytes((enum object_type)row->type) == 0)
+        if (text[0] == '\0' || takt_object_type_bytes((enum object_type)row->type) == 0)
             continue;
         bool aborted;
         uint32_t raw = lone_try_read(&lone, row->index, row->sub, &aborted);
@@ -265,9 +265,9 @@ static void test_limits_of_the_sheet_are_kept_by_the_drive(void)
 {
     char name[32];
     unsigned compared = 0;
-    for (unsigned i = 0; i < object_table_count; i++) {
+    for (unsigned i = 0; i < takt_object_table_count; i++) {
         const struct object_row *row = row_at(i);
-        unsigned bytes = object_type_bytes((enum object_type)row->type);
+        unsigned bytes = takt_object_type_bytes((enum object_type)row->type);
         if (!(row->flags & OBJECT_LIMITED) || row->index < 0x2000)
             continue;
         name_section(row, name);
@@ -305,7 +305,7 @@ static void test_the_drive_gives_its_sheet_away(void)
 {
     char *got = calloc(1, sheet_length + 8);
     size_t length = 0;
-    servo_set_eds(&lone.drive.servo, sheet, sheet_length);
+    takt_servo_set_eds(&lone.drive.servo, sheet, sheet_length);
     TEST_ASSERT_EQUAL_UINT32(sheet_length, lone_read(&lone, 0x1021, 0));
     for (uint32_t toggle = 0;; toggle ^= 0x10) {
         lone_take(&lone, 0x605, 8, 0x60 | toggle, 0);

@@ -46,7 +46,7 @@ static void assert_emcy(uint16_t code, uint8_t error_register)
 {
     struct emcy emcy;
     TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x085));
-    TEST_ASSERT_TRUE(emcy_read(lone_find(&lone, 0x085), &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(lone_find(&lone, 0x085), &emcy));
     TEST_ASSERT_EQUAL_HEX16(code, emcy.code);
     TEST_ASSERT_EQUAL_HEX8(error_register, emcy.error_register);
 }

@@ -56,11 +56,11 @@ static void test_guarding_that_stays_out_for_the_life_time_is_8130(void)
     TEST_ASSERT_NULL(lone_find(&lone, 0x085));
     lone_step(&lone, 1);
     TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x085));
-    TEST_ASSERT_TRUE(emcy_read(lone_find(&lone, 0x085), &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(lone_find(&lone, 0x085), &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x8130, emcy.code);
     TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, virtual_drive_get_state(&lone.drive));
     guard();
-    TEST_ASSERT_TRUE(emcy_read(lone_find(&lone, 0x085), &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(lone_find(&lone, 0x085), &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x0000, emcy.code);
 }
 

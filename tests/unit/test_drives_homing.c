@@ -166,7 +166,7 @@ static void test_a_hard_stop_is_found_by_torque_and_left(void)
         double zero = virtual_drive_get_position_mm(&lone.drive) -
                       lone_actual(&lone) / rows[i].increments_per_mm;
         TEST_ASSERT_TRUE(fabs(zero - rows[i].home_mm) < 0.001);
-        TEST_ASSERT_TRUE(fabs(servo_loop_torque_ratio(&lone.drive.servo.loop)) < 0.05);
+        TEST_ASSERT_TRUE(fabs(takt_servo_loop_torque_ratio(&lone.drive.servo.loop)) < 0.05);
         TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&lone.drive));
     }
 }

@@ -52,7 +52,7 @@ static void init_loop(unsigned count, uint32_t bitrate, double start_mm)
     TEST_ASSERT_TRUE(bus_init(&bus, bitrate));
     port = bus_attach(&bus, NULL);
     virtual_drives_init(&set, &bus, &virtual);
-    drives_init(&master, &config);
+    takt_drives_init(&master, &config);
 }
 
 void setUp(void)
@@ -67,14 +67,14 @@ void tearDown(void)
 /* The first half of a cycle: after it the master knows whether it is running. */
 static enum drives_state begin_cycle(void)
 {
-    drives_receive(&master, &port);
+    takt_drives_receive(&master, &port);
     return drives_get_state(&master);
 }
 
 static void end_cycle(const struct point *setpoint)
 {
-    drives_sync(&master, &port);
-    drives_send(&master, &port, setpoint);
+    takt_drives_sync(&master, &port);
+    takt_drives_send(&master, &port, setpoint);
     bus_run_until(&bus, bus_now_ns(&bus) + CYCLE_NS);
     always_quiet = always_quiet && bus_is_quiet(&bus);
     virtual_drives_step(&set, CYCLE_NS);
@@ -207,7 +207,7 @@ static uint64_t digest_of_run(void)
     make_sine();
     run_program();
     for (unsigned k = 0; k < CYCLES; k++)
-        digest = fnv_add_double(digest, actual_mm[k]);
+        digest = takt_fnv_add_double(digest, actual_mm[k]);
     return digest;
 }
 
@@ -225,7 +225,7 @@ static void assert_fits(unsigned count)
     struct point setpoint = {{0}};
     struct drives_load predicted;
     TEST_ASSERT_TRUE(
-        drives_predict_load(count, &(struct drives_rates){1000000, 0}, 1000, &predicted));
+        takt_drives_predict_load(count, &(struct drives_rates){1000000, 0}, 1000, &predicted));
     init_loop(count, 1000000, 0);
     start(&setpoint);
     for (unsigned k = 0; k < CYCLES; k++) {
@@ -255,7 +255,7 @@ static void test_a_drive_that_trips_stops_the_others_and_names_its_axis(void)
     setpoint.at[AXIS_Y] = 10;
     for (unsigned i = 0; i < 200; i++)
         cycle(&setpoint);
-    const struct diagnostic *fault = drives_get_fault(&master);
+    const struct diagnostic *fault = takt_drives_get_fault(&master);
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&master));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_FAULT, fault->code);
     TEST_ASSERT_EQUAL_INT('Y', fault->word[0]);
@@ -276,14 +276,14 @@ static void test_a_moving_machine_stops_when_one_node_is_stopped(void)
         setpoint.at[AXIS_X] = setpoint.at[AXIS_Z] = set_mm[k];
         cycle(&setpoint);
     }
-    nmt_write_command(&stop, NMT_STOP, 2);
+    takt_nmt_write_command(&stop, NMT_STOP, 2);
     TEST_ASSERT_TRUE(stranger.send(stranger.context, &stop));
     for (unsigned k = 250; k < 450; k++) {
         setpoint.at[AXIS_X] = setpoint.at[AXIS_Z] = set_mm[k];
         cycle(&setpoint);
     }
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SILENT, drives_get_fault(&master)->code);
-    TEST_ASSERT_EQUAL_INT('Y', drives_get_fault(&master)->word[0]);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SILENT, takt_drives_get_fault(&master)->code);
+    TEST_ASSERT_EQUAL_INT('Y', takt_drives_get_fault(&master)->word[0]);
     for (unsigned i = 0; i < DRIVES; i++)
         TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&set.drive[i]));
     TEST_ASSERT_TRUE(virtual_drive_get_position_mm(&set.drive[0]) < set_mm[250] + 4);
@@ -302,7 +302,7 @@ static double stop_beside_a_stopped_node(uint32_t stop_timeout_cycles)
     init_loop(DRIVES, 1000000, 0);
     struct can_port stranger = bus_attach(&bus, NULL);
     start(&setpoint);
-    nmt_write_command(&stop, NMT_STOP, 3);
+    takt_nmt_write_command(&stop, NMT_STOP, 3);
     for (unsigned k = 0, slow = 0; k < 2000; k++) {
         if (k == 300) {
             TEST_ASSERT_TRUE(stranger.send(stranger.context, &stop));
@@ -318,7 +318,7 @@ static double stop_beside_a_stopped_node(uint32_t stop_timeout_cycles)
         off_mm = fmax(off_mm, fabs(y_mm - x_mm / 2));
     }
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&master));
-    TEST_ASSERT_EQUAL_INT('Z', drives_get_fault(&master)->word[0]);
+    TEST_ASSERT_EQUAL_INT('Z', takt_drives_get_fault(&master)->word[0]);
     for (unsigned i = 0; i < DRIVES; i++)
         TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&set.drive[i]));
     return off_mm;

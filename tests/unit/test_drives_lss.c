@@ -126,7 +126,7 @@ static void switch_on(void)
 static uint32_t store_node(uint8_t node, bool can_be_kept)
 {
     keeps = can_be_kept;
-    servo_keep(&lone.drive.servo, &(struct drive_keeper){keep, kept_text});
+    takt_servo_keep(&lone.drive.servo, &(struct drive_keeper){keep, kept_text});
     (void)lss(0x04, 1, 0);
     (void)ask(0x11, node);
     return ask(0x17, 0);

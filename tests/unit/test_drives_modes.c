@@ -78,7 +78,7 @@ static void test_a_profile_takes_the_time_of_its_trapezoid(void)
     TEST_ASSERT_EQUAL_INT(20000, lone_actual(&lone));
 }
 
-/* Judged by differences of the command, cycle by cycle. */
+/* Verified by differences of the command, cycle by cycle. */
 static void test_a_profile_keeps_velocity_and_accelerations_and_never_overshoots(void)
 {
     double x = 0, v = 0, v_max = 0, up = 0, down = 0;
@@ -110,7 +110,7 @@ struct peaks {
     double velocity_mm_s, acceleration_mm_s2, jerk_mm_s3, place_mm;
 };
 
-/* Of the command, by differences over so many cycles, from rest at x on. */
+/* Peaks of the command, by differences over this many cycles, from rest at x on. */
 static struct peaks follow_command(unsigned cycles)
 {
     struct peaks most = {0, 0, 0, 0};

@@ -62,13 +62,13 @@ static void test_a_heartbeat_that_stays_out_stops_the_drive_and_tells_8130(void)
     TEST_ASSERT_NULL(lone_find(&lone, 0x085));
     lone_step(&lone, 1);
     TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x085));
-    TEST_ASSERT_TRUE(emcy_read(lone_find(&lone, 0x085), &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(lone_find(&lone, 0x085), &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x8130, emcy.code);
     TEST_ASSERT_EQUAL_HEX8(0x11, emcy.error_register);
     TEST_ASSERT_EQUAL_INT(NMT_PREOPERATIONAL, virtual_drive_get_nmt_state(&lone.drive));
     TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, virtual_drive_get_state(&lone.drive));
     hear_heartbeat(127);
-    TEST_ASSERT_TRUE(emcy_read(lone_find(&lone, 0x085), &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(lone_find(&lone, 0x085), &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x0000, emcy.code);
 }
 
@@ -101,7 +101,7 @@ static void test_a_sync_that_stays_out_is_8700(void)
     TEST_ASSERT_NULL(lone_find(&lone, 0x085));
     lone_step(&lone, 2);
     TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x085));
-    TEST_ASSERT_TRUE(emcy_read(lone_find(&lone, 0x085), &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(lone_find(&lone, 0x085), &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x8700, emcy.code);
     TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, virtual_drive_get_state(&lone.drive));
 }
@@ -356,7 +356,7 @@ static void test_the_time_of_day_is_taken_where_1012_says_so_and_goes_on(void)
 {
     struct can_frame frame;
     const struct time_stamp time = {.ms = TIME_MS_PER_DAY - 1, .days = 15000};
-    time_stamp_write(&frame, &time);
+    takt_time_stamp_write(&frame, &time);
     virtual_drive_on_frame(&lone.drive, &frame);
     TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x2002, 2));
     TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1012, 0, 4, 0x80000000 | 0x100));
@@ -424,7 +424,7 @@ static void keep_stored(bool succeeds)
 {
     keeps = succeeds;
     kept = 0;
-    servo_keep(&lone.drive.servo, &(struct drive_keeper){keep, kept_text});
+    takt_servo_keep(&lone.drive.servo, &(struct drive_keeper){keep, kept_text});
 }
 
 static void test_what_is_stored_is_kept_and_is_there_at_the_next_power_on(void)

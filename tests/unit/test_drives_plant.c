@@ -17,7 +17,7 @@ static void start(void)
     const struct servo_loop_config tuned = drive_plant_get_loop(&config);
 
     drive_plant_init(&plant, &config, false);
-    servo_loop_init(&loop, &tuned, &motor);
+    takt_servo_loop_init(&loop, &tuned, &motor);
 }
 
 void setUp(void)
@@ -34,7 +34,7 @@ void tearDown(void)
 static void follow_for(unsigned cycles, double velocity_mm_s)
 {
     for (unsigned i = 0; i < cycles; i++)
-        servo_loop_follow(&loop, loop.command_mm + velocity_mm_s * CYCLE_S, CYCLE_NS);
+        takt_servo_loop_follow(&loop, loop.command_mm + velocity_mm_s * CYCLE_S, CYCLE_NS);
 }
 
 static void test_a_plant_at_rest_stays_exactly_where_it_is(void)
@@ -42,7 +42,7 @@ static void test_a_plant_at_rest_stays_exactly_where_it_is(void)
     follow_for(1000, 0);
     TEST_ASSERT_TRUE(plant.position_mm == 0);
     TEST_ASSERT_TRUE(plant.velocity_mm_s == 0);
-    TEST_ASSERT_TRUE(servo_loop_following_error_mm(&loop) == 0);
+    TEST_ASSERT_TRUE(takt_servo_loop_following_error_mm(&loop) == 0);
 }
 
 /*
@@ -54,7 +54,7 @@ static void measure_ramp(double *ramp_mm, double *constant_mm)
     *ramp_mm = *constant_mm = 0;
     for (unsigned k = 1; k <= 1000; k++) {
         follow_for(1, k < 100 ? k : 100);
-        double error_mm = fabs(servo_loop_following_error_mm(&loop));
+        double error_mm = fabs(takt_servo_loop_following_error_mm(&loop));
         *ramp_mm = fmax(*ramp_mm, error_mm);
         if (k > 900)
             *constant_mm = fmax(*constant_mm, error_mm);
@@ -98,7 +98,7 @@ static void test_the_torque_limit_bounds_the_acceleration(void)
 {
     double limit_mm_s2 = config.torque_max_nm / config.inertia_kg_m2 *
                          config.travel_per_revolution_mm / 6.283185307179586;
-    servo_loop_follow(&loop, 10, CYCLE_NS);
+    takt_servo_loop_follow(&loop, 10, CYCLE_NS);
     double reached_mm_s2 = plant.velocity_mm_s / CYCLE_S;
     TEST_ASSERT_TRUE(reached_mm_s2 <= limit_mm_s2 * (1 + 1e-12));
     TEST_ASSERT_TRUE(reached_mm_s2 > 0.99 * limit_mm_s2);
@@ -107,7 +107,7 @@ static void test_the_torque_limit_bounds_the_acceleration(void)
 static void test_a_step_settles_at_its_end_and_does_not_overshoot_much(void)
 {
     double highest_mm = 0;
-    servo_loop_follow(&loop, 0.1, CYCLE_NS);
+    takt_servo_loop_follow(&loop, 0.1, CYCLE_NS);
     for (unsigned i = 0; i < 1000; i++) {
         follow_for(1, 0);
         highest_mm = fmax(highest_mm, plant.position_mm);
@@ -143,8 +143,8 @@ static void test_braking_stops_with_the_quick_stop_deceleration_and_then_stands(
     unsigned cycles = 0;
     follow_for(500, 100);
     double from_mm = plant.position_mm;
-    servo_loop_begin_brake(&loop, config.quick_stop_deceleration_mm_s2);
-    while (!servo_loop_brake(&loop, CYCLE_NS))
+    takt_servo_loop_begin_brake(&loop, config.quick_stop_deceleration_mm_s2);
+    while (!takt_servo_loop_brake(&loop, CYCLE_NS))
         TEST_ASSERT_TRUE(++cycles < 200);
     double way_mm = plant.position_mm - from_mm;
     double expected_mm = 100.0 * 100.0 / 2 / config.quick_stop_deceleration_mm_s2;
@@ -163,8 +163,8 @@ static void test_a_motor_that_is_said_to_stand_does_not_run_on_without_torque(vo
     for (unsigned i = 1; i <= 2000; i++) {
         start();
         follow_for(200, 0.05 * i);
-        servo_loop_begin_brake(&loop, config.quick_stop_deceleration_mm_s2);
-        for (unsigned cycles = 0; !servo_loop_brake(&loop, CYCLE_NS); cycles++)
+        takt_servo_loop_begin_brake(&loop, config.quick_stop_deceleration_mm_s2);
+        for (unsigned cycles = 0; !takt_servo_loop_brake(&loop, CYCLE_NS); cycles++)
             TEST_ASSERT_TRUE(cycles < 250);
         TEST_ASSERT_TRUE(fabs(plant.velocity_mm_s) < unseen_mm_s);
     }
@@ -173,10 +173,10 @@ static void test_a_motor_that_is_said_to_stand_does_not_run_on_without_torque(vo
 static void test_braking_begins_at_the_motor_however_far_the_command_was(void)
 {
     unsigned cycles = 0;
-    servo_loop_follow(&loop, 1000, CYCLE_NS);
-    servo_loop_begin_brake(&loop, config.quick_stop_deceleration_mm_s2);
-    TEST_ASSERT_TRUE(servo_loop_following_error_mm(&loop) == 0);
-    while (!servo_loop_brake(&loop, CYCLE_NS))
+    takt_servo_loop_follow(&loop, 1000, CYCLE_NS);
+    takt_servo_loop_begin_brake(&loop, config.quick_stop_deceleration_mm_s2);
+    TEST_ASSERT_TRUE(takt_servo_loop_following_error_mm(&loop) == 0);
+    while (!takt_servo_loop_brake(&loop, CYCLE_NS))
         TEST_ASSERT_TRUE(++cycles < 200);
     TEST_ASSERT_TRUE(plant.position_mm < 0.5);
 }
@@ -186,8 +186,8 @@ static void test_without_torque_friction_stops_the_motor_and_the_command_stays_w
     follow_for(500, 100);
     double from_mm = plant.position_mm, velocity_mm_s = plant.velocity_mm_s;
     for (unsigned i = 0; i < 10000; i++) {
-        servo_loop_coast(&loop, CYCLE_NS);
-        TEST_ASSERT_TRUE(servo_loop_following_error_mm(&loop) == 0);
+        takt_servo_loop_coast(&loop, CYCLE_NS);
+        TEST_ASSERT_TRUE(takt_servo_loop_following_error_mm(&loop) == 0);
     }
     /* v dx = -v J / b dv: it runs out over v J / b */
     double way_mm = velocity_mm_s * config.inertia_kg_m2 / config.viscous_friction_nm_s_per_rad;
@@ -203,8 +203,8 @@ static void test_any_cycle_from_100_us_to_10_ms_follows(void)
         start();
         for (uint32_t time_ns = 0; time_ns < 1000000000; time_ns += cycles_ns[i]) {
             double command_mm = 5 * (1 - cos(6e-9 * time_ns));
-            servo_loop_follow(&loop, command_mm, cycles_ns[i]);
-            TEST_ASSERT_TRUE(fabs(servo_loop_following_error_mm(&loop)) < 0.05);
+            takt_servo_loop_follow(&loop, command_mm, cycles_ns[i]);
+            TEST_ASSERT_TRUE(fabs(takt_servo_loop_following_error_mm(&loop)) < 0.05);
         }
     }
 }
@@ -219,12 +219,12 @@ static void test_dry_friction_holds_the_motor_until_the_torque_exceeds_it(void)
     double held_mm_s2 = 0.01 / 6.283185307179586 * 1000 * 0.5 / 3e-4;
     double gain_mm_s2 = 6.283185307179586 * 100 * 100; /* Kp Kv, per mm */
     double held_mm = held_mm_s2 / gain_mm_s2;
-    servo_loop_follow(&loop, 0.9 * held_mm, CYCLE_NS);
+    takt_servo_loop_follow(&loop, 0.9 * held_mm, CYCLE_NS);
     for (unsigned i = 0; i < 100; i++)
-        servo_loop_follow(&loop, 0.9 * held_mm, CYCLE_NS);
+        takt_servo_loop_follow(&loop, 0.9 * held_mm, CYCLE_NS);
     TEST_ASSERT_TRUE(fabs(plant.position_mm) < 0.05 * held_mm);
     for (unsigned i = 0; i < 1000; i++)
-        servo_loop_follow(&loop, 10 * held_mm, CYCLE_NS);
+        takt_servo_loop_follow(&loop, 10 * held_mm, CYCLE_NS);
     TEST_ASSERT_TRUE(plant.position_mm > 8 * held_mm && plant.position_mm < 10 * held_mm);
     TEST_ASSERT_TRUE(plant.velocity_mm_s == 0);
 }
@@ -237,7 +237,7 @@ static void test_without_power_dry_friction_stops_the_motor_in_the_time_of_its_t
     follow_for(500, 50);
     double from_mm = plant.position_mm, velocity_mm_s = plant.velocity_mm_s;
     while (plant.velocity_mm_s != 0)
-        servo_loop_coast(&loop, CYCLE_NS);
+        takt_servo_loop_coast(&loop, CYCLE_NS);
     double held_mm_s2 = 0.01 / 6.283185307179586 * 1000 * 0.5 / 3e-4;
     double way_mm = velocity_mm_s * velocity_mm_s / (2 * held_mm_s2);
     TEST_ASSERT_TRUE(fabs(plant.position_mm - from_mm - way_mm) < 0.02 * way_mm);
@@ -295,8 +295,8 @@ static void test_the_motor_warms_up_as_its_torque_says(void)
     start();
     plant.damage.is_jammed = true;
     for (unsigned i = 0; i < 2000; i++)
-        servo_loop_follow(&loop, 1, CYCLE_NS);
-    double ratio = servo_loop_torque_ratio(&loop);
+        takt_servo_loop_follow(&loop, 1, CYCLE_NS);
+    double ratio = takt_servo_loop_torque_ratio(&loop);
     double expected_c = 25 + 60 * ratio * ratio * (1 - exp(-1));
     TEST_ASSERT_TRUE(fabs(ratio - 3.8 / 1.27) < 1e-9);
     TEST_ASSERT_TRUE(fabs(plant.temperature_c - expected_c) < 0.01 * expected_c);

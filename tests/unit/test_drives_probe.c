@@ -50,7 +50,7 @@ static void test_the_position_is_that_of_the_moment_within_the_cycle(void)
     set_function(ENABLE | RISE);
     TEST_ASSERT_EQUAL_HEX32(1, status());
     move(2, 3);
-    servo_touch(&lone.drive.servo, true, 0.25);
+    takt_servo_touch(&lone.drive.servo, true, 0.25);
     TEST_ASSERT_EQUAL_HEX32(1 | 2, status());
     TEST_ASSERT_EQUAL_INT(2250, latched(1));
     TEST_ASSERT_EQUAL_HEX32(0x10000, lone_read(&lone, 0x60FD, 0) & 0x10000);
@@ -60,9 +60,9 @@ static void test_each_edge_has_its_own_value_and_bit(void)
 {
     set_function(ENABLE | RISE | FALL);
     move(2, 3);
-    servo_touch(&lone.drive.servo, true, 1);
+    takt_servo_touch(&lone.drive.servo, true, 1);
     move(3, 4);
-    servo_touch(&lone.drive.servo, false, 1);
+    takt_servo_touch(&lone.drive.servo, false, 1);
     TEST_ASSERT_EQUAL_HEX32(1 | 2 | 4, status());
     TEST_ASSERT_EQUAL_INT(3000, latched(1));
     TEST_ASSERT_EQUAL_INT(4000, latched(2));
@@ -72,11 +72,11 @@ static void test_an_edge_that_is_not_looked_for_is_not_latched(void)
 {
     set_function(ENABLE | FALL);
     move(2, 3);
-    servo_touch(&lone.drive.servo, true, 1);
+    takt_servo_touch(&lone.drive.servo, true, 1);
     TEST_ASSERT_EQUAL_HEX32(1, status());
     set_function(0);
     TEST_ASSERT_EQUAL_HEX32(0, status());
-    servo_touch(&lone.drive.servo, false, 1);
+    takt_servo_touch(&lone.drive.servo, false, 1);
     TEST_ASSERT_EQUAL_HEX32(0, status());
 }
 
@@ -84,8 +84,8 @@ static void bounce(void)
 {
     for (unsigned i = 0; i < 2; i++) {
         move(i, i + 1);
-        servo_touch(&lone.drive.servo, true, 1);
-        servo_touch(&lone.drive.servo, false, 1);
+        takt_servo_touch(&lone.drive.servo, true, 1);
+        takt_servo_touch(&lone.drive.servo, false, 1);
     }
 }
 
@@ -115,7 +115,7 @@ static void test_touch_probe_2_is_the_same_eight_bits_higher(void)
 {
     set_function((ENABLE | RISE) << 8 | ENABLE | FALL);
     move(2, 3);
-    servo_touch(&lone.drive.servo, true, 1);
+    takt_servo_touch(&lone.drive.servo, true, 1);
     TEST_ASSERT_EQUAL_HEX32(0x0300 | 1, status());
     TEST_ASSERT_EQUAL_INT(3000, latched(3));
     TEST_ASSERT_EQUAL_INT(0, latched(4));
@@ -129,7 +129,7 @@ static void test_the_index_pulse_is_latched_where_it_is(void)
     set_function(ENABLE | INDEX | RISE);
     lone_enable(&lone, CSP);
     lone_step(&lone, 100);
-    servo_touch(&lone.drive.servo, true, 1);
+    takt_servo_touch(&lone.drive.servo, true, 1);
     TEST_ASSERT_EQUAL_HEX32(1, status());
     (void)lone_write(&lone, 0x607A, 0, 4, 10007);
     lone_step(&lone, 200);
@@ -143,7 +143,7 @@ static void test_a_motor_that_turns_the_other_way_latches_what_its_position_is(v
     lone_start(&lone);
     set_function(ENABLE | RISE);
     move(2, 3);
-    servo_touch(&lone.drive.servo, true, 0.5);
+    takt_servo_touch(&lone.drive.servo, true, 0.5);
     TEST_ASSERT_EQUAL_INT(-2500, latched(1));
 }
 

@@ -74,7 +74,7 @@ void setUp(void)
 {
     const struct sdo_server_owner owner = {owner_read, owner_may_write, owner_write, owner_send,
                                            NULL};
-    sdo_server_init(&server, NODE, &owner);
+    takt_sdo_server_init(&server, NODE, &owner);
     sent_count = 0;
     room = UINT32_MAX;
     stored_length = 0;
@@ -88,9 +88,9 @@ void tearDown(void)
 static void ask(uint8_t command, uint32_t object, uint32_t value)
 {
     struct can_frame frame;
-    sdo_write_initiate(&frame, SDO_REQUEST_FUNCTION + NODE, command, object, value);
+    takt_sdo_write_initiate(&frame, SDO_REQUEST_FUNCTION + NODE, command, object, value);
     sent_count = 0;
-    sdo_server_take(&server, &frame);
+    takt_sdo_server_take(&server, &frame);
 }
 
 /* A frame that is not the first of a transfer. */
@@ -101,7 +101,7 @@ static void tell(uint8_t command, const void *bytes, size_t length)
     if (length > 0)
         memcpy(frame.data + 1, bytes, length);
     sent_count = 0;
-    sdo_server_take(&server, &frame);
+    takt_sdo_server_take(&server, &frame);
 }
 
 static void assert_answer(uint8_t command, uint32_t object, uint32_t value)
@@ -110,7 +110,7 @@ static void assert_answer(uint8_t command, uint32_t object, uint32_t value)
     TEST_ASSERT_EQUAL_HEX16(SDO_RESPONSE_FUNCTION + NODE, sent[0].id);
     TEST_ASSERT_EQUAL_UINT8(8, sent[0].length);
     TEST_ASSERT_EQUAL_HEX8(command, sent[0].data[0]);
-    TEST_ASSERT_EQUAL_HEX32(object, sdo_read_object(&sent[0]));
+    TEST_ASSERT_EQUAL_HEX32(object, takt_sdo_read_object(&sent[0]));
     TEST_ASSERT_EQUAL_HEX32(value, little_endian_read32(sent[0].data + 4));
 }
 
@@ -258,7 +258,7 @@ static void test_an_unknown_command_is_an_abort(void)
 
 /* ---- Blocks ---- */
 
-/* CRC-16 of CiA 301, bit by bit from its definition, to judge the server's. */
+/* CRC-16 of CiA 301, bit by bit from its definition, to verify the server's. */
 static uint16_t crc_of(const uint8_t *bytes, size_t length)
 {
     uint32_t remainder = 0;
@@ -323,10 +323,10 @@ static void test_a_block_that_finds_no_room_goes_on_later(void)
     tell(0xA3, NULL, 0);
     TEST_ASSERT_EQUAL_UINT(6, sent_count);
     room = UINT32_MAX;
-    sdo_server_go_on(&server);
+    takt_sdo_server_go_on(&server);
     TEST_ASSERT_EQUAL_UINT(15, sent_count);
     TEST_ASSERT_EQUAL_HEX8(0x8F, sent[14].data[0]);
-    sdo_server_go_on(&server);
+    takt_sdo_server_go_on(&server);
     TEST_ASSERT_EQUAL_UINT(15, sent_count);
 }
 
@@ -443,9 +443,9 @@ static void test_a_block_download_is_bounded_and_may_be_aborted(void)
 static void test_a_frame_of_another_length_is_no_request(void)
 {
     struct can_frame frame;
-    sdo_write_initiate(&frame, SDO_REQUEST_FUNCTION + NODE, 0x40, NUMBER, 0);
+    takt_sdo_write_initiate(&frame, SDO_REQUEST_FUNCTION + NODE, 0x40, NUMBER, 0);
     frame.length = 7;
-    sdo_server_take(&server, &frame);
+    takt_sdo_server_take(&server, &frame);
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
 }
 

@@ -82,14 +82,14 @@ static void start_embedded(void)
     bus_observe(&bus, &(struct bus_listener){on_bus_frame, NULL});
     port = bus_attach(&bus, NULL);
     virtual_drives_init(&embedded, &bus, &drives_config);
-    drives_init(&master, &master_config);
+    takt_drives_init(&master, &master_config);
 }
 
 static void cycle(const struct point *setpoint)
 {
-    drives_receive(&master, &port);
-    drives_sync(&master, &port);
-    drives_send(&master, &port, setpoint);
+    takt_drives_receive(&master, &port);
+    takt_drives_sync(&master, &port);
+    takt_drives_send(&master, &port, setpoint);
     bus_run_until(&bus, bus_now_ns(&bus) + CYCLE_NS);
     virtual_drives_step(&embedded, CYCLE_NS);
 }
@@ -174,8 +174,8 @@ static void test_drives_behind_a_port_answer_every_sync_as_on_the_embedded_bus(v
 static void write_object(unsigned node, uint32_t object, unsigned bytes, uint32_t value)
 {
     struct can_frame frame;
-    sdo_write_initiate(&frame, (uint16_t)(SDO_REQUEST_FUNCTION + node),
-                       (uint8_t)(0x23 | (4 - bytes) << 2), object, value);
+    takt_sdo_write_initiate(&frame, (uint16_t)(SDO_REQUEST_FUNCTION + node),
+                            (uint8_t)(0x23 | (4 - bytes) << 2), object, value);
     (void)virtual_drives_take_by_sync(&outside, &frame);
 }
 

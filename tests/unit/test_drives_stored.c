@@ -36,7 +36,7 @@ static size_t store_some(void)
     write(0x2010, 1, 1, 64);
     write(0x6098, 0, 1, (uint8_t)-4);
     write(0x1010, 1, 4, SAVE);
-    return servo_write_stored(&lone.drive.servo, bytes, sizeof bytes);
+    return takt_servo_write_stored(&lone.drive.servo, bytes, sizeof bytes);
 }
 
 static void test_what_was_written_is_read(void)
@@ -45,7 +45,7 @@ static void test_what_was_written_is_read(void)
     struct drive_objects before = lone.drive.servo.stored;
     TEST_ASSERT_TRUE(length > 0);
     lone_start(&lone);
-    TEST_ASSERT_TRUE(servo_read_stored(&lone.drive.servo, bytes, length));
+    TEST_ASSERT_TRUE(takt_servo_read_stored(&lone.drive.servo, bytes, length));
     TEST_ASSERT_EQUAL_MEMORY(&before.settings, &lone.drive.servo.stored.settings,
                              sizeof before.settings);
     TEST_ASSERT_EQUAL_MEMORY(&before.settings, &lone.drive.servo.objects.settings,
@@ -56,15 +56,15 @@ static void test_what_was_written_is_read(void)
 static void test_all_that_can_be_stored_has_room(void)
 {
     size_t all = 1;
-    for (unsigned i = 0; i < object_table_count; i++)
-        if (servo_is_stored(&object_table[i]))
-            all += 4 + (object_table[i].type == OBJECT_STRING
+    for (unsigned i = 0; i < takt_object_table_count; i++)
+        if (takt_servo_is_stored(&takt_object_table[i]))
+            all += 4 + (takt_object_table[i].type == OBJECT_STRING
                             ? DRIVE_LABEL_SIZE
-                            : object_type_bytes((enum object_type)object_table[i].type));
+                            : takt_object_type_bytes((enum object_type)takt_object_table[i].type));
     TEST_ASSERT_TRUE(all <= SERVO_STORED_MAX);
     size_t length = store_some();
     for (size_t room = 0; room < length; room++)
-        TEST_ASSERT_EQUAL_UINT(0, servo_write_stored(&lone.drive.servo, bytes, room));
+        TEST_ASSERT_EQUAL_UINT(0, takt_servo_write_stored(&lone.drive.servo, bytes, room));
 }
 
 static void start_anew(void)
@@ -85,7 +85,7 @@ static void test_a_part_of_it_or_other_bytes_leave_the_values_of_power_on(void)
     srand(3);
     for (size_t part = 0; part < length; part++) {
         start_anew();
-        if (!servo_read_stored(&lone.drive.servo, bytes, part))
+        if (!takt_servo_read_stored(&lone.drive.servo, bytes, part))
             assert_fresh();
     }
     for (unsigned i = 0; i < 3000; i++) {
@@ -94,7 +94,7 @@ static void test_a_part_of_it_or_other_bytes_leave_the_values_of_power_on(void)
         for (unsigned k = 0; k < 3; k++)
             wrong[(unsigned)rand() % sizeof wrong] = (uint8_t)rand();
         start_anew();
-        if (!servo_read_stored(&lone.drive.servo, wrong, sizeof wrong))
+        if (!takt_servo_read_stored(&lone.drive.servo, wrong, sizeof wrong))
             assert_fresh();
         lone_step(&lone, 2);
     }
@@ -108,11 +108,11 @@ static void test_each_mistake_is_refused(void)
         {5, 0x18, 0x10, 4, 4, 1, 0},
     };
     static const uint8_t good[] = {5, 0x17, 0x10, 0, 2, 1, 0};
-    TEST_ASSERT_TRUE(servo_read_stored(&lone.drive.servo, good, sizeof good));
+    TEST_ASSERT_TRUE(takt_servo_read_stored(&lone.drive.servo, good, sizeof good));
     for (unsigned i = 0; i < sizeof mistakes / sizeof mistakes[0]; i++) {
         lone_start(&lone);
-        TEST_ASSERT_FALSE(servo_read_stored(&lone.drive.servo, mistakes[i],
-                                            5u + (mistakes[i][4] < 3 ? mistakes[i][4] : 3u)));
+        TEST_ASSERT_FALSE(takt_servo_read_stored(&lone.drive.servo, mistakes[i],
+                                                 5u + (mistakes[i][4] < 3 ? mistakes[i][4] : 3u)));
         assert_fresh();
     }
 }
@@ -121,9 +121,9 @@ static void test_its_node_id_counts_for_its_identifiers(void)
 {
     static const uint8_t moved[] = {9, 0x17, 0x10, 0, 2, 100, 0};
     uint32_t id = 0;
-    TEST_ASSERT_TRUE(servo_read_stored(&lone.drive.servo, moved, sizeof moved));
+    TEST_ASSERT_TRUE(takt_servo_read_stored(&lone.drive.servo, moved, sizeof moved));
     TEST_ASSERT_EQUAL_UINT8(9, lone.drive.servo.config.node);
-    TEST_ASSERT_TRUE(servo_read_object(&lone.drive.servo, 0x18000120, &id));
+    TEST_ASSERT_TRUE(takt_servo_read_object(&lone.drive.servo, 0x18000120, &id));
     TEST_ASSERT_EQUAL_HEX32(0x40000189, id);
 }
 

@@ -43,7 +43,7 @@ static void init_drive(double following_error_window_mm)
     drive_plant_set_default(&config.plant);
     config.plant.start_mm = 2.5;
     config.plant.following_error_window_mm = following_error_window_mm;
-    target_pdo_set(&target, nodes, 1, 0, TARGET_PDO_PAIR);
+    takt_target_pdo_set(&target, nodes, 1, 0, TARGET_PDO_PAIR);
     virtual_drive_init(&drive, &config, &target, &port);
     virtual_drive_boot(&drive);
 }
@@ -200,7 +200,7 @@ static void test_a_pdo_that_is_too_short_is_an_emergency_and_changes_nothing(voi
     enable();
     take(0x300 + NODE, 3, 0, 0);
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    TEST_ASSERT_TRUE(emcy_read(&sent[0], &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(&sent[0], &emcy));
     TEST_ASSERT_EQUAL_INT(NODE, emcy.node);
     TEST_ASSERT_EQUAL_HEX16(0x8210, emcy.code);
     sync_and_step();
@@ -218,7 +218,7 @@ static void fail_by_following(void)
     TEST_ASSERT_EQUAL_INT(CIA402_FAULT_REACTION, virtual_drive_get_state(&drive));
     const struct can_frame *frame = find_sent(0x080 + NODE);
     TEST_ASSERT_NOT_NULL(frame);
-    TEST_ASSERT_TRUE(emcy_read(frame, &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(frame, &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x8611, emcy.code);
     for (unsigned i = 0; i < 5000; i++)
         sync_and_step();
@@ -251,7 +251,7 @@ static void test_fault_reset_tells_that_the_error_is_gone(void)
     control(CIA402_FAULT_RESET);
     TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&drive));
     TEST_ASSERT_EQUAL_UINT(1, sent_count);
-    TEST_ASSERT_TRUE(emcy_read(&sent[0], &emcy));
+    TEST_ASSERT_TRUE(takt_emcy_read(&sent[0], &emcy));
     TEST_ASSERT_EQUAL_HEX16(0x0000, emcy.code);
     enable();
 }

@@ -25,7 +25,7 @@ static void test_every_code_has_a_meaning_and_nothing_else_has(void)
 
         for (unsigned number = 0; number <= NUMBER_MAX; number++) {
             (void)snprintf(text, sizeof text, "%c%u", letter, number);
-            TEST_ASSERT_EQUAL_MESSAGE(code_find(letter, number) != NULL,
+            TEST_ASSERT_EQUAL_MESSAGE(takt_code_find(letter, number) != NULL,
                                       meaning_of_code(letter, number) != NULL, text);
         }
     }

@@ -33,7 +33,7 @@ static struct curve arc_of(struct point start, struct point end, double cx, doub
     struct curve c;
 
     TEST_ASSERT_TRUE(
-        curve_set_arc(&c, &start, &end, PLANE_XY, (double[2]){cx, cy}, clockwise, turns));
+        takt_curve_set_arc(&c, &start, &end, PLANE_XY, (double[2]){cx, cy}, clockwise, turns));
     return c;
 }
 
@@ -46,7 +46,7 @@ static double measured_length(const struct curve *c, int n)
     for (int i = 1; i <= n; i++) {
         struct point p;
 
-        curve_point(c, c->length_mm * i / n, &p);
+        takt_curve_point(c, c->length_mm * i / n, &p);
         sum += distance(&p, &last);
         last = p;
     }
@@ -59,9 +59,9 @@ static void test_a_line_is_as_long_as_its_ends_are_apart(void)
     const struct point start = at(1.0, 2.0, 3.0);
     const struct point end = at(4.0, 6.0, 15.0);
 
-    TEST_ASSERT_TRUE(curve_set_line(&c, &start, &end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&c, &start, &end));
     TEST_ASSERT_EQUAL_DOUBLE(13.0, c.length_mm);
-    TEST_ASSERT_FALSE(curve_is_rotary(&c));
+    TEST_ASSERT_FALSE(takt_curve_is_rotary(&c));
 }
 
 static void test_a_line_without_length_is_refused(void)
@@ -69,7 +69,7 @@ static void test_a_line_without_length_is_refused(void)
     struct curve c;
     const struct point p = at(1.0, 2.0, 3.0);
 
-    TEST_ASSERT_FALSE(curve_set_line(&c, &p, &p));
+    TEST_ASSERT_FALSE(takt_curve_set_line(&c, &p, &p));
 }
 
 static void test_a_line_of_rotary_axes_alone_is_measured_in_radians(void)
@@ -80,9 +80,9 @@ static void test_a_line_of_rotary_axes_alone_is_measured_in_radians(void)
 
     end.at[AXIS_B] = 3.0;
     end.at[AXIS_C] = -4.0;
-    TEST_ASSERT_TRUE(curve_set_line(&c, &start, &end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&c, &start, &end));
     TEST_ASSERT_EQUAL_DOUBLE(5.0, c.length_mm);
-    TEST_ASSERT_TRUE(curve_is_rotary(&c));
+    TEST_ASSERT_TRUE(takt_curve_is_rotary(&c));
 }
 
 static void test_rotary_axes_follow_the_length_of_the_linear_ones(void)
@@ -93,8 +93,8 @@ static void test_rotary_axes_follow_the_length_of_the_linear_ones(void)
     struct point p;
 
     end.at[AXIS_A] = 1.0;
-    TEST_ASSERT_TRUE(curve_set_line(&c, &start, &end));
-    curve_point(&c, 2.5, &p);
+    TEST_ASSERT_TRUE(takt_curve_set_line(&c, &start, &end));
+    takt_curve_point(&c, 2.5, &p);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.25, p.at[AXIS_A]);
 }
 
@@ -105,8 +105,8 @@ static void test_rounding_of_linear_axes_does_not_hide_a_turn(void)
     struct curve c;
 
     end.at[AXIS_A] = 1.5;
-    TEST_ASSERT_TRUE(curve_set_line(&c, &start, &end));
-    TEST_ASSERT_TRUE(curve_is_rotary(&c));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&c, &start, &end));
+    TEST_ASSERT_TRUE(takt_curve_is_rotary(&c));
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.5, c.length_mm);
 }
 
@@ -152,12 +152,12 @@ static void test_every_plane_turns_from_its_first_axis_to_its_second(void)
         struct point middle;
         struct curve c;
 
-        plane_axes(planes[i], &first, &second);
+        takt_plane_axes(planes[i], &first, &second);
         start.at[first] = 2.0;
         end.at[second] = 2.0;
         TEST_ASSERT_TRUE(
-            curve_set_arc(&c, &start, &end, planes[i], (double[2]){0.0, 0.0}, false, 1));
-        curve_point(&c, 0.5 * c.length_mm, &middle);
+            takt_curve_set_arc(&c, &start, &end, planes[i], (double[2]){0.0, 0.0}, false, 1));
+        takt_curve_point(&c, 0.5 * c.length_mm, &middle);
         TEST_ASSERT_DOUBLE_WITHIN(1e-14, maths_sqrt(2.0), middle.at[first]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-14, maths_sqrt(2.0), middle.at[second]);
     }
@@ -168,7 +168,7 @@ static void test_an_arc_of_radius_zero_is_refused(void)
     const struct point p = at(1.0, 1.0, 0.0);
     struct curve c;
 
-    TEST_ASSERT_FALSE(curve_set_arc(&c, &p, &p, PLANE_XY, (double[2]){1.0, 1.0}, false, 1));
+    TEST_ASSERT_FALSE(takt_curve_set_arc(&c, &p, &p, PLANE_XY, (double[2]){1.0, 1.0}, false, 1));
 }
 
 /* Arcs of many kinds, the last two with radii that differ. */
@@ -199,9 +199,9 @@ static void test_an_arc_starts_and_ends_where_it_was_told(void)
         const struct curve c = arc_number(i);
         struct point p;
 
-        curve_point(&c, 0.0, &p);
+        takt_curve_point(&c, 0.0, &p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.0, distance(&p, &c.start));
-        curve_point(&c, c.length_mm, &p);
+        takt_curve_point(&c, c.length_mm, &p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.0, distance(&p, &c.end));
         TEST_ASSERT_DOUBLE_WITHIN(1e-15, c.end.at[AXIS_B], p.at[AXIS_B]);
     }
@@ -219,7 +219,7 @@ static void test_an_arc_that_closes_but_for_rounding_ends_where_it_was_told(void
         struct point p;
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.0, c.length_mm / (radius * MATHS_TWO_PI));
-        curve_point(&c, c.length_mm, &p);
+        takt_curve_point(&c, c.length_mm, &p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-17, 0.0, distance(&p, &c.end));
     }
 }
@@ -234,8 +234,8 @@ static void test_steps_of_equal_length_are_equally_far_apart(void)
         for (int k = 0; k < 1000; k++) {
             struct point a, b;
 
-            curve_point(&c, c.length_mm * k * 1e-3, &a);
-            curve_point(&c, c.length_mm * (k + 0.001) * 1e-3, &b);
+            takt_curve_point(&c, c.length_mm * k * 1e-3, &a);
+            takt_curve_point(&c, c.length_mm * (k + 0.001) * 1e-3, &b);
             TEST_ASSERT_DOUBLE_WITHIN(tolerance, 1.0, distance(&a, &b) / (c.length_mm * 1e-6));
         }
     }
@@ -251,11 +251,11 @@ static void test_tangent_and_curvature_are_the_derivatives_of_the_point(void)
             const double s = c.length_mm * k * 0.01;
             struct point before, here, after, t, kappa;
 
-            curve_point(&c, s - h, &before);
-            curve_point(&c, s, &here);
-            curve_point(&c, s + h, &after);
-            curve_tangent(&c, s, &t);
-            curve_curvature(&c, s, &kappa);
+            takt_curve_point(&c, s - h, &before);
+            takt_curve_point(&c, s, &here);
+            takt_curve_point(&c, s + h, &after);
+            takt_curve_tangent(&c, s, &t);
+            takt_curve_curvature(&c, s, &kappa);
             for (int axis = 0; axis < AXIS_COUNT; axis++) {
                 const double first = (after.at[axis] - before.at[axis]) / (2.0 * h);
                 const double second =
@@ -274,12 +274,12 @@ static void test_bounds_hold_everywhere_on_the_curve(void)
         const struct curve c = arc_number(i);
         struct curve_bounds b;
 
-        curve_bound(&c, &b);
+        takt_curve_bound(&c, &b);
         for (int k = 0; k <= 100; k++) {
             struct point t, kappa;
 
-            curve_tangent(&c, c.length_mm * k * 0.01, &t);
-            curve_curvature(&c, c.length_mm * k * 0.01, &kappa);
+            takt_curve_tangent(&c, c.length_mm * k * 0.01, &t);
+            takt_curve_curvature(&c, c.length_mm * k * 0.01, &kappa);
             for (int axis = 0; axis < AXIS_COUNT; axis++) {
                 TEST_ASSERT_TRUE(maths_abs(t.at[axis]) <= b.first[axis] * (1.0 + 1e-12));
                 TEST_ASSERT_TRUE(maths_abs(kappa.at[axis]) <= b.second[axis] * (1.0 + 1e-12));
@@ -301,7 +301,7 @@ static void test_an_arc_of_two_very_different_radii_never_turns_back(void)
         for (int k = 1; k <= 1000; k++) {
             struct point p;
 
-            curve_point(&c, c.length_mm * k * 1e-3, &p);
+            takt_curve_point(&c, c.length_mm * k * 1e-3, &p);
             TEST_ASSERT_TRUE(p.at[AXIS_Z] > last);
             last = p.at[AXIS_Z];
         }
@@ -325,19 +325,19 @@ static void test_bounds_of_an_arc_of_two_radii_tell_how_far_it_is_from_a_circle(
         const double h = c.length_mm * 1e-5;
         struct curve_bounds b;
 
-        curve_bound(&c, &b);
+        takt_curve_bound(&c, &b);
         TEST_ASSERT_TRUE(b.second_along <= 10.0 * maths_abs(ratios[i] - 1.0) * b.second[AXIS_X]);
         for (int k = 1; k < 100; k++) {
             const double s = c.length_mm * k * 0.01;
             struct point t, k0, k1, third, normal;
 
-            curve_tangent(&c, s, &t);
-            curve_curvature(&c, s - h, &k0);
-            curve_curvature(&c, s + h, &k1);
+            takt_curve_tangent(&c, s, &t);
+            takt_curve_curvature(&c, s - h, &k0);
+            takt_curve_curvature(&c, s + h, &k1);
             for (int axis = 0; axis < AXIS_COUNT; axis++) {
                 third.at[axis] = (k1.at[axis] - k0.at[axis]) / (2.0 * h);
             }
-            curve_curvature(&c, s, &k0);
+            takt_curve_curvature(&c, s, &k0);
             normal = at(-t.at[AXIS_Y], t.at[AXIS_X], 0.0);
             const double size = maths_sqrt(along(&t, &t));
 
@@ -356,9 +356,9 @@ static void test_an_arc_of_two_radii_changes_its_radius_linearly_with_the_angle(
         struct point p;
         double radius, fraction;
 
-        curve_point(&c, c.length_mm * k * 0.01, &p);
+        takt_curve_point(&c, c.length_mm * k * 0.01, &p);
         radius = maths_sqrt(p.at[0] * p.at[0] + p.at[1] * p.at[1]);
-        fraction = -maths_atan2(p.at[1], p.at[0]) / (1.5 * MATHS_PI);
+        fraction = -takt_maths_atan2(p.at[1], p.at[0]) / (1.5 * MATHS_PI);
         fraction = fraction < -1e-12 ? fraction + 2.0 / 1.5 : fraction;
         TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.05 + 0.01 * fraction, radius);
     }

@@ -57,13 +57,13 @@ static enum nurbs_result take_pieces(struct nurbs *n, struct point *at)
     struct nurbs_piece p;
     enum nurbs_result result;
 
-    while ((result = nurbs_next(n, &p)) == NURBS_PIECE) {
+    while ((result = takt_nurbs_next(n, &p)) == NURBS_PIECE) {
         struct point end = *at;
 
         end.at[AXIS_X] = p.end_mm[0];
         end.at[AXIS_Y] = p.end_mm[1];
         TEST_ASSERT_TRUE(pieces < PIECES_MAX);
-        TEST_ASSERT_TRUE(curve_set_quintic(&piece[pieces++], at, &end, PLANE_XY, &p.course));
+        TEST_ASSERT_TRUE(takt_curve_set_quintic(&piece[pieces++], at, &end, PLANE_XY, &p.course));
         *at = end;
     }
     return result;
@@ -74,12 +74,12 @@ static void divide(const struct whole *w)
     struct point at = {{w->point[0][0], w->point[0][1]}};
     struct nurbs n;
 
-    nurbs_open(&n, w->order);
+    takt_nurbs_open(&n, w->order);
     for (unsigned i = 0; i < w->count + w->order; i++) {
         if (i < w->count) {
-            nurbs_add_point(&n, w->point[i], w->point[i][2]);
+            takt_nurbs_add_point(&n, w->point[i], w->point[i][2]);
         }
-        nurbs_add_knot(&n, w->knot[i]);
+        takt_nurbs_add_knot(&n, w->knot[i]);
         TEST_ASSERT_EQUAL_INT(NURBS_NONE, take_pieces(&n, &at));
     }
     TEST_ASSERT_DOUBLE_WITHIN(NEAR_MM, w->point[w->count - 1][0], at.at[AXIS_X]);
@@ -132,7 +132,7 @@ static double distance_from(const struct curve *c, const double at[2])
         for (unsigned k = 0; k < 2; k++) {
             struct point p;
 
-            curve_point(c, low + (high - low) * (1.0 + (double)k) / 3.0, &p);
+            takt_curve_point(c, low + (high - low) * (1.0 + (double)k) / 3.0, &p);
             d[k] = (p.at[0] - at[0]) * (p.at[0] - at[0]) + (p.at[1] - at[1]) * (p.at[1] - at[1]);
         }
         square = maths_min(square, maths_min(d[0], d[1]));
@@ -209,10 +209,10 @@ static void test_a_circle_is_one(void)
                 struct point p;
                 struct point bend;
 
-                curve_point(&piece[i], piece[i].length_mm * n / LOOKS, &p);
+                takt_curve_point(&piece[i], piece[i].length_mm * n / LOOKS, &p);
                 TEST_ASSERT_DOUBLE_WITHIN(NEAR_MM, r,
                                           maths_sqrt(p.at[0] * p.at[0] + p.at[1] * p.at[1]));
-                curve_curvature(&piece[i], piece[i].length_mm * n / LOOKS, &bend);
+                takt_curve_curvature(&piece[i], piece[i].length_mm * n / LOOKS, &bend);
                 TEST_ASSERT_DOUBLE_WITHIN(
                     0.001, 1.0, r * maths_sqrt(bend.at[0] * bend.at[0] + bend.at[1] * bend.at[1]));
             }
@@ -228,7 +228,7 @@ static void set_random(struct whole *w, unsigned order, unsigned count, double s
     for (unsigned i = 0; i < count; i++) {
         w->point[i][0] = random_between(-size_mm, size_mm);
         w->point[i][1] = random_between(-size_mm, size_mm);
-        w->point[i][2] = rational ? maths_exp(random_between(-1.5, 1.5)) : 1.0;
+        w->point[i][2] = rational ? takt_maths_exp(random_between(-1.5, 1.5)) : 1.0;
     }
     set_open_knots(w);
 }
@@ -239,7 +239,7 @@ static void test_random_splines_are_within_a_millionth_of_a_micrometre_of_closed
     struct whole w;
 
     for (unsigned i = 0; i < 30; i++) {
-        const double size_mm = maths_exp(random_between(-2.3, 6.9));
+        const double size_mm = takt_maths_exp(random_between(-2.3, 6.9));
 
         pieces = 0;
         set_random(&w, NURBS_ORDER_MIN + i % 5, 6 + i % 4, size_mm, i % 2 == 0);
@@ -258,7 +258,7 @@ static void test_four_points_are_a_bezier_curve(void)
     divide(&w);
     struct point t;
 
-    curve_tangent(&piece[0], 0.0, &t);
+    takt_curve_tangent(&piece[0], 0.0, &t);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, t.at[AXIS_Y]);
     TEST_ASSERT_TRUE(off_closed_form(&w) <= NEAR_MM);
     double nearest = MATHS_INFINITY;
@@ -282,10 +282,10 @@ static void test_tangent_and_curvature_go_on_from_piece_to_piece(void)
             struct point t[2];
             struct point bend[2];
 
-            curve_tangent(&piece[k], piece[k].length_mm, &t[0]);
-            curve_tangent(&piece[k + 1], 0.0, &t[1]);
-            curve_curvature(&piece[k], piece[k].length_mm, &bend[0]);
-            curve_curvature(&piece[k + 1], 0.0, &bend[1]);
+            takt_curve_tangent(&piece[k], piece[k].length_mm, &t[0]);
+            takt_curve_tangent(&piece[k + 1], 0.0, &t[1]);
+            takt_curve_curvature(&piece[k], piece[k].length_mm, &bend[0]);
+            takt_curve_curvature(&piece[k + 1], 0.0, &bend[1]);
             for (unsigned axis = 0; axis < 2; axis++) {
                 const double size =
                     maths_max(1e-3, maths_abs(bend[0].at[0]) + maths_abs(bend[0].at[1]));
@@ -302,7 +302,7 @@ static void check_bounds(const struct curve *c)
 {
     struct curve_bounds b;
 
-    curve_bound(c, &b);
+    takt_curve_bound(c, &b);
     for (unsigned n = 0; n < LOOKS; n++) {
         const double s = c->length_mm * (n + 0.5) / LOOKS;
         const double h = 0.01 * c->length_mm;
@@ -310,10 +310,10 @@ static void check_bounds(const struct curve *c)
         struct point bend[3];
         double third[2];
 
-        curve_tangent(c, s, &t);
-        curve_curvature(c, s, &bend[0]);
-        curve_curvature(c, s - h, &bend[1]);
-        curve_curvature(c, s + h, &bend[2]);
+        takt_curve_tangent(c, s, &t);
+        takt_curve_curvature(c, s, &bend[0]);
+        takt_curve_curvature(c, s - h, &bend[1]);
+        takt_curve_curvature(c, s + h, &bend[2]);
         for (unsigned axis = 0; axis < 2; axis++) {
             third[axis] = (bend[2].at[axis] - bend[1].at[axis]) / (2.0 * h);
             TEST_ASSERT_TRUE(maths_abs(t.at[axis]) <= b.first[axis] * (1.0 + 1e-12));
@@ -348,7 +348,7 @@ static void test_bounds_hold_everywhere_and_are_no_wider_than_they_need_be(void)
     set_circle(&w, 10.0);
     divide(&w);
     for (unsigned k = 0; k < pieces; k++) {
-        curve_bound(&piece[k], &b);
+        takt_curve_bound(&piece[k], &b);
         TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.1, b.second[0]);
         TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.01, b.third[0]);
         TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.0, b.third_across);
@@ -396,10 +396,10 @@ static void test_the_place_where_a_piece_turns_back_is_its_farthest(void)
     struct point t;
     double s;
 
-    TEST_ASSERT_TRUE(curve_set_quintic(&c, &start, &end, PLANE_XY, &course));
-    TEST_ASSERT_FALSE(quintic_extreme(&c, 0, &s));
-    TEST_ASSERT_TRUE(quintic_extreme(&c, 1, &s));
-    curve_tangent(&c, s, &t);
+    TEST_ASSERT_TRUE(takt_curve_set_quintic(&c, &start, &end, PLANE_XY, &course));
+    TEST_ASSERT_FALSE(takt_quintic_extreme(&c, 0, &s));
+    TEST_ASSERT_TRUE(takt_quintic_extreme(&c, 1, &s));
+    takt_curve_tangent(&c, s, &t);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, t.at[AXIS_Y]);
 }
 

@@ -16,8 +16,8 @@ void setUp(void)
             control[k].at[i] = (k * k * k - 3.0 * k * i) * 0.01 + i;
         }
     }
-    curve_set_spline(&piece, control, LENGTH_MM);
-    curve_set_spline(&next, control + 1, LENGTH_MM);
+    takt_curve_set_spline(&piece, control, LENGTH_MM);
+    takt_curve_set_spline(&next, control + 1, LENGTH_MM);
 }
 
 void tearDown(void)
@@ -35,9 +35,9 @@ static void test_a_piece_goes_from_its_start_to_its_end(void)
 {
     struct point p;
 
-    curve_point(&piece, 0.0, &p);
+    takt_curve_point(&piece, 0.0, &p);
     check_same(&piece.start, &p, 0.0);
-    curve_point(&piece, LENGTH_MM, &p);
+    takt_curve_point(&piece, LENGTH_MM, &p);
     check_same(&piece.end, &p, 1e-14);
 }
 
@@ -47,11 +47,11 @@ static void test_pieces_join_with_position_tangent_and_curvature(void)
     struct point b;
 
     check_same(&piece.end, &next.start, 1e-15);
-    curve_tangent(&piece, LENGTH_MM, &a);
-    curve_tangent(&next, 0.0, &b);
+    takt_curve_tangent(&piece, LENGTH_MM, &a);
+    takt_curve_tangent(&next, 0.0, &b);
     check_same(&a, &b, 1e-13);
-    curve_curvature(&piece, LENGTH_MM, &a);
-    curve_curvature(&next, 0.0, &b);
+    takt_curve_curvature(&piece, LENGTH_MM, &a);
+    takt_curve_curvature(&next, 0.0, &b);
     check_same(&a, &b, 1e-12);
 }
 
@@ -64,15 +64,15 @@ static void test_tangent_and_curvature_are_the_derivatives_of_the_point(void)
     struct point after;
     struct point derivative;
 
-    curve_point(&piece, s - h, &before);
-    curve_point(&piece, s + h, &after);
-    curve_tangent(&piece, s, &derivative);
+    takt_curve_point(&piece, s - h, &before);
+    takt_curve_point(&piece, s + h, &after);
+    takt_curve_tangent(&piece, s, &derivative);
     for (int i = 0; i < AXIS_COUNT; i++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-8, (after.at[i] - before.at[i]) / (2 * h), derivative.at[i]);
     }
-    curve_tangent(&piece, s - h, &before);
-    curve_tangent(&piece, s + h, &after);
-    curve_curvature(&piece, s, &derivative);
+    takt_curve_tangent(&piece, s - h, &before);
+    takt_curve_tangent(&piece, s + h, &after);
+    takt_curve_curvature(&piece, s, &derivative);
     for (int i = 0; i < AXIS_COUNT; i++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-8, (after.at[i] - before.at[i]) / (2 * h), derivative.at[i]);
     }
@@ -82,13 +82,13 @@ static void test_bounds_hold_everywhere_on_the_piece(void)
 {
     struct curve_bounds bounds;
 
-    curve_bound(&piece, &bounds);
+    takt_curve_bound(&piece, &bounds);
     for (int k = 0; k <= 100; k++) {
         struct point t;
         struct point c;
 
-        curve_tangent(&piece, LENGTH_MM * k / 100.0, &t);
-        curve_curvature(&piece, LENGTH_MM * k / 100.0, &c);
+        takt_curve_tangent(&piece, LENGTH_MM * k / 100.0, &t);
+        takt_curve_curvature(&piece, LENGTH_MM * k / 100.0, &c);
         for (int i = 0; i < AXIS_COUNT; i++) {
             TEST_ASSERT_TRUE(maths_abs(t.at[i]) <= bounds.first[i] + 1e-12);
             TEST_ASSERT_TRUE(maths_abs(c.at[i]) <= bounds.second[i] + 1e-12);

@@ -28,7 +28,7 @@ static struct takt_job *open_run(const char *text, const char *set)
     return takt_open(set != NULL ? 4 : 2, argv, &held, 1);
 }
 
-/* Its digest at the end, going so many cycles at a time. */
+/* Its digest at the end, going this many cycles at a time. */
 static uint64_t digest_in_steps(const char *set, uint64_t cycles)
 {
     struct takt_job *job = open_run(short_move, set);

@@ -7,8 +7,8 @@ static struct diagnostic wrong;
 
 void setUp(void)
 {
-    machine_set_default(&machine);
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    takt_machine_set_default(&machine);
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
 }
 
 void tearDown(void)
@@ -24,11 +24,11 @@ static void expect(enum takt_error code, const char *text)
 {
     char said[DIAGNOSTIC_TEXT_MAX];
 
-    TEST_ASSERT_FALSE(machine_check(&machine, &wrong));
-    (void)diagnostic_text(&wrong, said);
+    TEST_ASSERT_FALSE(takt_machine_check(&machine, &wrong));
+    (void)takt_diagnostic_text(&wrong, said);
     TEST_ASSERT_EQUAL_STRING(text, said);
     TEST_ASSERT_EQUAL(code, wrong.code);
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
 }
 
 static void test_a_travel_has_two_ends_and_zero_between_them(void)
@@ -94,12 +94,12 @@ static void test_a_node_id_is_free_on_another_bus(void)
 {
     axis_y()->drive_node = 1;
     axis_y()->drive_bus = 1;
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.io[0].node = 1;
     expect(TAKT_ERROR_MACHINE_IO_NODE, "io 1: another node on the bus has its id 1");
     machine.io[0].node = 3;
     machine.io[0].bus = 1;
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.io[0].bus = CAN_BUSES_MAX;
     expect(TAKT_ERROR_MACHINE_BUS, "CAN bus 2: the buses of this build are 0 ... 1");
 }
@@ -148,7 +148,7 @@ static void test_gantries_follow_each_other_on_axes_and_nodes_of_their_own(void)
     machine.cycle_us = 2000;
     machine.gantry[0] = y;
     machine.gantry[1] = x;
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.gantry[1].axis = AXIS_Y;
     expect_gantry_refused();
     machine.gantry[1] = x;
@@ -163,12 +163,12 @@ static void test_a_home_of_the_makers_method_is_told_for_a_reversed_motor(void)
 {
     machine.gantry[0] = (struct machine_gantry){.axis = AXIS_Y, .drive_node = 9, .skew_max_mm = 1};
     machine.axis[AXIS_Y].home_method = -3;
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.gantry[0].is_reversed = 1;
     expect(TAKT_ERROR_MACHINE_GANTRY_HOME, "gantry of axis Y: a maker's home_method and a reversed "
                                            "motor need one in [gantry], too");
     machine.gantry[0].home_method = -4;
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.axis[AXIS_Z].home_method = 0;
     expect(TAKT_ERROR_MACHINE_HOME_METHOD,
            "axis Z: home_method is 1 ... 37, or below 0 a method of the drive's maker");
@@ -179,7 +179,7 @@ static void test_a_gantry_has_a_second_drive_on_can_and_an_alarm(void)
     const struct machine_gantry good = {.axis = AXIS_Y, .drive_node = 9, .skew_max_mm = 1};
 
     machine.gantry[0] = good;
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.gantry[0].skew_max_mm = 0;
     expect_gantry_refused();
     machine.gantry[0] = good;

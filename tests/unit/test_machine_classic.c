@@ -16,12 +16,12 @@ static void test_can_fd_is_refused_where_the_image_has_none(void)
     struct diagnostic wrong;
     char said[DIAGNOSTIC_TEXT_MAX];
 
-    machine_set_default(&machine);
-    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    takt_machine_set_default(&machine);
+    TEST_ASSERT_TRUE(takt_machine_check(&machine, &wrong));
     machine.can_data_bitrate = 5000000;
-    TEST_ASSERT_FALSE(machine_check(&machine, &wrong));
+    TEST_ASSERT_FALSE(takt_machine_check(&machine, &wrong));
     TEST_ASSERT_EQUAL(TAKT_ERROR_MACHINE_FD, wrong.code);
-    (void)diagnostic_text(&wrong, said);
+    (void)takt_diagnostic_text(&wrong, said);
     TEST_ASSERT_EQUAL_STRING(
         "data_bitrate 5000000: this image has classical CAN alone, so it must be 0", said);
 }

@@ -66,7 +66,7 @@ void tearDown(void)
 static void ask(const uint8_t *request, size_t size)
 {
     memset(reply, 0xEE, sizeof reply);
-    length = modbus_answer(&map, request, size, reply);
+    length = takt_modbus_answer(&map, request, size, reply);
 }
 
 #define ASK(...)                                                                                   \

@@ -43,8 +43,8 @@ static const struct modbus_map map = {read_map, write_map, NULL};
 void setUp(void)
 {
     memset(word, 0, sizeof word);
-    modbus_rtu_init(&rtu, &map, UNIT, GAP_US);
-    modbus_tcp_init(&tcp);
+    takt_modbus_rtu_init(&rtu, &map, UNIT, GAP_US);
+    takt_modbus_tcp_init(&tcp);
     now_us = 0xFFFFF000U; /* the clock wraps in every test */
     length = 0;
 }
@@ -56,7 +56,7 @@ void tearDown(void)
 static void send_bytes(const uint8_t *bytes, size_t size)
 {
     for (size_t i = 0; i < size; i++) {
-        const size_t answered = modbus_rtu_take(&rtu, bytes[i], now_us, reply);
+        const size_t answered = takt_modbus_rtu_take(&rtu, bytes[i], now_us, reply);
 
         if (answered > 0)
             length = answered;
@@ -68,7 +68,7 @@ static void send_bytes(const uint8_t *bytes, size_t size)
 static void send_frame(const uint8_t *bytes, size_t size)
 {
     uint8_t frame[300];
-    const uint16_t crc = crc16(bytes, size);
+    const uint16_t crc = takt_crc16(bytes, size);
 
     length = 0;
     memcpy(frame, bytes, size);
@@ -86,12 +86,12 @@ static void send_frame(const uint8_t *bytes, size_t size)
 static void pass_gap(void)
 {
     now_us += GAP_US;
-    length = modbus_rtu_idle(&rtu, now_us, reply);
+    length = takt_modbus_rtu_idle(&rtu, now_us, reply);
 }
 
 static void expect_reply(const uint8_t *bytes, size_t size)
 {
-    const uint16_t crc = crc16(bytes, size);
+    const uint16_t crc = takt_crc16(bytes, size);
 
     TEST_ASSERT_EQUAL_UINT(size + 2, length);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(bytes, reply, size);
@@ -110,16 +110,16 @@ static void test_the_checksum_is_that_of_the_standard(void)
 {
     static const uint8_t request[] = {0x02, 0x07};
 
-    TEST_ASSERT_EQUAL_HEX16(0x4B37, crc16((const uint8_t *)"123456789", 9));
-    TEST_ASSERT_EQUAL_HEX16(0x1241, crc16(request, sizeof request));
+    TEST_ASSERT_EQUAL_HEX16(0x4B37, takt_crc16((const uint8_t *)"123456789", 9));
+    TEST_ASSERT_EQUAL_HEX16(0x1241, takt_crc16(request, sizeof request));
 }
 
 /* 3.5 characters of 11 bits at 9600 baud are 4010.4 us; above 19200 baud it is always 1750. */
 static void test_the_gap_is_three_and_a_half_characters(void)
 {
-    TEST_ASSERT_EQUAL_UINT32(4011, modbus_rtu_gap_us(9600, 11));
-    TEST_ASSERT_EQUAL_UINT32(1823, modbus_rtu_gap_us(19200, 10));
-    TEST_ASSERT_EQUAL_UINT32(1750, modbus_rtu_gap_us(115200, 11));
+    TEST_ASSERT_EQUAL_UINT32(4011, takt_modbus_rtu_gap_us(9600, 11));
+    TEST_ASSERT_EQUAL_UINT32(1823, takt_modbus_rtu_gap_us(19200, 10));
+    TEST_ASSERT_EQUAL_UINT32(1750, takt_modbus_rtu_gap_us(115200, 11));
 }
 
 static void test_a_request_is_answered_at_its_last_byte(void)
@@ -149,7 +149,7 @@ static void test_the_first_byte_after_a_gap_ends_the_frame_before_it(void)
 {
     SEND(UNIT, 43, 14, 1, 0);
     now_us += GAP_US;
-    length = modbus_rtu_take(&rtu, UNIT, now_us, reply);
+    length = takt_modbus_rtu_take(&rtu, UNIT, now_us, reply);
     EXPECT(UNIT, 43 | 0x80, 1);
 }
 
@@ -202,7 +202,7 @@ static void test_a_broadcast_is_done_and_not_answered(void)
 static void test_more_bytes_than_any_frame_has_are_dropped_until_a_gap(void)
 {
     for (unsigned i = 0; i < 1000; i++)
-        (void)modbus_rtu_take(&rtu, UNIT, now_us, reply);
+        (void)takt_modbus_rtu_take(&rtu, UNIT, now_us, reply);
     pass_gap();
     TEST_ASSERT_EQUAL_UINT(0, length);
     SEND(UNIT, 3, 0, 0, 0, 1);
@@ -211,7 +211,7 @@ static void test_more_bytes_than_any_frame_has_are_dropped_until_a_gap(void)
 
 static enum modbus_tcp_result feed(const uint8_t **bytes, size_t *size)
 {
-    return modbus_tcp_take(&tcp, &map, bytes, size, reply, &length);
+    return takt_modbus_tcp_take(&tcp, &map, bytes, size, reply, &length);
 }
 
 static enum modbus_tcp_result feed_all(const uint8_t *bytes, size_t size)
@@ -258,9 +258,9 @@ static void test_a_header_without_sense_ends_the_connection(void)
     static const uint8_t too_long[] = {0, 1, 0, 0, 0, 255};
 
     TEST_ASSERT_EQUAL_INT(MODBUS_TCP_BROKEN, feed_all(protocol, sizeof protocol));
-    modbus_tcp_init(&tcp);
+    takt_modbus_tcp_init(&tcp);
     TEST_ASSERT_EQUAL_INT(MODBUS_TCP_BROKEN, feed_all(too_short, sizeof too_short));
-    modbus_tcp_init(&tcp);
+    takt_modbus_tcp_init(&tcp);
     TEST_ASSERT_EQUAL_INT(MODBUS_TCP_BROKEN, feed_all(too_long, sizeof too_long));
 }
 

@@ -8,8 +8,8 @@
 #include <unity.h>
 
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 static struct motion motion;
@@ -20,8 +20,8 @@ void setUp(void)
 {
     const struct point start = {{0}};
 
-    path_init(&path, &limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
 }
 
@@ -40,22 +40,22 @@ static void push(enum move_kind kind, double x, double feed_mm_s)
     m.dwell_s = feed_mm_s;
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     m.turns = 1;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 static void push_end(void)
 {
     push(MOVE_END, 0.0, 0.0);
-    path_finish(&path);
+    takt_path_finish(&path);
 }
 
 static enum motion_result cycle(void)
 {
-    if (motion_wanted(&motion) != NULL) {
-        path_go_on(&path);
-        motion_build(&motion);
+    if (takt_motion_wanted(&motion) != NULL) {
+        takt_path_go_on(&path);
+        takt_motion_build(&motion);
     }
-    return motion_cycle(&motion, &asked, &record);
+    return takt_motion_cycle(&motion, &asked, &record);
 }
 
 static uint64_t run_to_the_end(void)
@@ -81,7 +81,7 @@ static double least_time(double length, double feed, double a, double j)
     }
     const double v = 0.5 * a * (maths_sqrt(a * a / (j * j) + 4.0 * length / a) - a / j);
 
-    return v >= a * a / j ? 2.0 * (v / a + a / j) : 4.0 * maths_cbrt(length / (2.0 * j));
+    return v >= a * a / j ? 2.0 * (v / a + a / j) : 4.0 * takt_maths_cbrt(length / (2.0 * j));
 }
 
 static void test_a_single_move_takes_the_least_time_within_two_cycles(void)
@@ -215,7 +215,7 @@ static void push_smooth(double x, double y, double a)
                      .turns = 1,
                      .end = {{x, y, 0.0, a}}};
 
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 /* Over X, Y, Z, or over A, B, C where only those move. */
@@ -261,8 +261,8 @@ static void test_the_feed_of_smoothed_rotary_motion_counts_its_angle(void)
     turning.velocity_mm_s[AXIS_A] = 20.0;
     turning.acceleration_mm_s2[AXIS_A] = 200.0;
     turning.jerk_mm_s3[AXIS_A] = 10000.0;
-    path_init(&path, &turning, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &turning, &start);
+    takt_motion_init(&motion, &path, &start, false);
     push_smooth(0.0, 0.0, 2.0);
     push_smooth(0.0, 0.0, 1.0);
     push_end();
@@ -287,13 +287,13 @@ static void test_an_early_end_drops_the_rest_of_the_path(void)
     for (int i = 0; i < 500; i++) {
         (void)cycle();
     }
-    motion_end_here(&motion);
+    takt_motion_end_here(&motion);
     for (int i = 0; i < 300; i++) {
         (void)cycle();
     }
     const double x = record.cmd.at[AXIS_X];
 
-    TEST_ASSERT_TRUE(motion_is_idle(&motion) && x > 1.0 && x < 50.0);
+    TEST_ASSERT_TRUE(takt_motion_is_idle(&motion) && x > 1.0 && x < 50.0);
     push(MOVE_FEED, 0.0, 50.0);
     push_end();
     (void)run_to_the_end();
@@ -317,28 +317,28 @@ static void test_a_starved_cycle_rests_and_goes_on(void)
 
 static void test_no_cycle_is_made_before_anything_is_planned(void)
 {
-    TEST_ASSERT_EQUAL(MOTION_NOT_YET, motion_cycle(&motion, &asked, &record));
+    TEST_ASSERT_EQUAL(MOTION_NOT_YET, takt_motion_cycle(&motion, &asked, &record));
 }
 
 /*
- * Over blocks so short that the lead point's place in a new ceiling takes more than a cycle to find, both are in use until
+ * Over blocks so short that the trapezoidal reference's place in a new ceiling takes more than a cycle to find, both are in use until
  * then, and nobody may make another one.
  */
 static void test_no_ceiling_is_made_while_both_are_in_use(void)
 {
     unsigned taking = 0;
 
-    for (unsigned i = 1; path_has_room(&path); i++) {
+    for (unsigned i = 1; takt_path_has_room(&path); i++) {
         struct move m = {.kind = MOVE_FEED, .feed_mm_s = 100.0, .turns = 1};
 
         m.end.at[AXIS_X] = 0.02 * i;
         m.overrides = i % 2 == 0 ? OVERRIDE_HOLD : OVERRIDE_FEED | OVERRIDE_HOLD;
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
-    path_finish(&path);
+    takt_path_finish(&path);
     do {
-        if (motion.lead.coming.ceiling != NULL) {
-            TEST_ASSERT_NULL(motion_wanted(&motion));
+        if (motion.reference.coming.ceiling != NULL) {
+            TEST_ASSERT_NULL(takt_motion_wanted(&motion));
             taking++;
         }
     } while (cycle() == MOTION_CYCLE);

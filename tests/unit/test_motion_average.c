@@ -1,4 +1,4 @@
-/* The moving average between lead point and setpoint. */
+/* The moving average between trapezoidal reference and setpoint. */
 #include "motion/average.h"
 
 #include "plan/path_unit.h"
@@ -17,16 +17,16 @@ void tearDown(void)
 
 static void test_at_rest_nothing_lags(void)
 {
-    average_start(&average, LAW_GENTLE, 20, 12345, 0);
+    takt_average_start(&average, RAMP_PROFILE_GENTLE, 20, 12345, 0);
     TEST_ASSERT_TRUE(average_lag(&average) == 0.0);
 }
 
 /* Boxes of 20, 10 and 10 cycles: (19 + 9 + 9) / 2 cycles behind. */
 static void test_at_constant_feed_it_follows_half_the_window_behind(void)
 {
-    average_start(&average, LAW_GENTLE, 20, 0, 1000);
+    takt_average_start(&average, RAMP_PROFILE_GENTLE, 20, 0, 1000);
     TEST_ASSERT_TRUE(average_lag(&average) == 18500.0);
-    average_push(&average, 1000);
+    takt_average_push(&average, 1000);
     TEST_ASSERT_TRUE(average_lag(&average) == 18500.0);
 }
 
@@ -38,10 +38,10 @@ static void test_one_box_spreads_a_step_of_acceleration_over_its_cycles(void)
     uint64_t at = 0;
     double h[4] = {0.0};
 
-    average_start(&average, LAW_JERK, (uint32_t)cycles, 0, 0);
+    takt_average_start(&average, RAMP_PROFILE_JERK, (uint32_t)cycles, 0, 0);
     for (int i = 0; i < 30; i++) {
         at += (uint64_t)(i + 1) * a;
-        average_push(&average, at);
+        takt_average_push(&average, at);
         h[3] = h[2];
         h[2] = h[1];
         h[1] = h[0];
@@ -54,8 +54,8 @@ static void test_one_box_spreads_a_step_of_acceleration_over_its_cycles(void)
 
 static void test_positions_may_wrap_around(void)
 {
-    average_start(&average, LAW_SMOOTH, 9, UINT64_MAX - 50, 100);
-    average_push(&average, (uint64_t)(UINT64_MAX - 50 + 100));
+    takt_average_start(&average, RAMP_PROFILE_SMOOTH, 9, UINT64_MAX - 50, 100);
+    takt_average_push(&average, (uint64_t)(UINT64_MAX - 50 + 100));
     TEST_ASSERT_TRUE(average_lag(&average) == 100.0 * 0.5 * (8 + 4));
 }
 

@@ -27,9 +27,9 @@ void setUp(void)
     const struct panel_config config = {.port = {.look = look, .alive = hear}, .password = 4711};
 
     memset(&shown, 0, sizeof shown);
-    panel_init(&panel, &config);
-    panel_client_enter(&one, &panel);
-    panel_client_enter(&other, &panel);
+    takt_panel_init(&panel, &config);
+    takt_panel_client_enter(&one, &panel);
+    takt_panel_client_enter(&other, &panel);
 }
 
 void tearDown(void)
@@ -38,18 +38,18 @@ void tearDown(void)
 
 static enum modbus_exception give(struct panel_client *client, uint16_t password)
 {
-    const struct modbus_map map = panel_client_map(client);
+    const struct modbus_map map = takt_panel_client_map(client);
     uint8_t bytes[4] = {0};
 
     modbus_write16(bytes + 2, password);
-    return map.write(map.context, MODBUS_HOLDINGS, panel_registers[REGISTER_PASSWORD].address, 2,
-                     bytes);
+    return map.write(map.context, MODBUS_HOLDINGS, takt_panel_registers[REGISTER_PASSWORD].address,
+                     2, bytes);
 }
 
 /* Panels that merge what they read do not know of gaps. */
 static void test_gaps_between_registers_read_as_0(void)
 {
-    const struct modbus_map map = panel_client_map(&one);
+    const struct modbus_map map = takt_panel_client_map(&one);
 
     shown.value[REGISTER_HOMED] = 7;
     shown.value[REGISTER_POSITION_X] = 12345;

@@ -39,14 +39,14 @@ static void hear(void *context)
     alive++;
 }
 
-static bool store_begin(void *context, uint32_t size)
+static bool takt_store_begin(void *context, uint32_t size)
 {
     (void)context;
     room = size;
     return size <= sizeof stored;
 }
 
-static bool store_write(void *context, uint32_t offset, const uint8_t *bytes, size_t size)
+static bool takt_store_write(void *context, uint32_t offset, const uint8_t *bytes, size_t size)
 {
     (void)context;
     TEST_ASSERT_TRUE(offset + size <= room);
@@ -72,16 +72,16 @@ static void start_with(uint32_t password)
 {
     const struct panel_config config = {
         .port = {look, order, hear, NULL},
-        .store = {.begin = store_begin,
-                  .write = store_write,
+        .store = {.begin = takt_store_begin,
+                  .write = takt_store_write,
                   .prepare = store_prepare,
                   .place = store_place},
         .password = password,
     };
 
-    panel_init(&panel, &config);
-    panel_client_enter(&one, &panel);
-    panel_client_enter(&other, &panel);
+    takt_panel_init(&panel, &config);
+    takt_panel_client_enter(&one, &panel);
+    takt_panel_client_enter(&other, &panel);
 }
 
 void setUp(void)
@@ -100,15 +100,15 @@ void tearDown(void)
 
 static enum modbus_exception read_row(struct panel_client *client, enum panel_id id)
 {
-    const struct panel_register *row = &panel_registers[id];
-    const struct modbus_map map = panel_client_map(client);
+    const struct panel_register *row = &takt_panel_registers[id];
+    const struct modbus_map map = takt_panel_client_map(client);
 
     return map.read(map.context, row->table, row->address, row->words, data);
 }
 
 static int64_t value_of(struct panel_client *client, enum panel_id id)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     uint32_t bits;
 
     TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, read_row(client, id));
@@ -123,15 +123,15 @@ static int64_t value_of(struct panel_client *client, enum panel_id id)
 static enum modbus_exception write_words(struct panel_client *client, uint16_t address,
                                          uint16_t count, const uint8_t *bytes)
 {
-    const struct modbus_map map = panel_client_map(client);
+    const struct modbus_map map = takt_panel_client_map(client);
 
     return map.write(map.context, MODBUS_HOLDINGS, address, count, bytes);
 }
 
 static enum modbus_exception write_row(struct panel_client *client, enum panel_id id, int64_t value)
 {
-    const struct panel_register *row = &panel_registers[id];
-    const struct modbus_map map = panel_client_map(client);
+    const struct panel_register *row = &takt_panel_registers[id];
+    const struct modbus_map map = takt_panel_client_map(client);
     const uint32_t bits = (uint32_t)(uint64_t)value;
     uint8_t bytes[4] = {0};
 
@@ -151,7 +151,8 @@ static bool is_number(const struct panel_register *row)
 static void test_rows_stand_in_order_and_do_not_overlap(void)
 {
     for (unsigned i = 1; i < REGISTER_COUNT; i++) {
-        const struct panel_register *before = &panel_registers[i - 1], *row = &panel_registers[i];
+        const struct panel_register *before = &takt_panel_registers[i - 1],
+                                    *row = &takt_panel_registers[i];
 
         TEST_ASSERT_TRUE_MESSAGE(
             row->table > before->table ||
@@ -163,16 +164,16 @@ static void test_rows_stand_in_order_and_do_not_overlap(void)
 static void test_every_row_is_found_by_each_address_and_by_its_name(void)
 {
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
 
         for (unsigned k = 0; k < row->words; k++)
-            TEST_ASSERT_EQUAL_UINT(i, panel_find(row->table, (uint16_t)(row->address + k)));
-        TEST_ASSERT_EQUAL_UINT(i, panel_find_name(panel_text(row)->name));
+            TEST_ASSERT_EQUAL_UINT(i, takt_panel_find(row->table, (uint16_t)(row->address + k)));
+        TEST_ASSERT_EQUAL_UINT(i, takt_panel_find_name(panel_text(row)->name));
     }
-    TEST_ASSERT_EQUAL_UINT(REGISTER_FEED_OVERRIDE, panel_find_name("feed_override"));
-    TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, panel_find_name("FEED"
-                                                           "_OVERRIDES"));
-    TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, panel_find(MODBUS_COILS, 40000));
+    TEST_ASSERT_EQUAL_UINT(REGISTER_FEED_OVERRIDE, takt_panel_find_name("feed_override"));
+    TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, takt_panel_find_name("FEED"
+                                                                "_OVERRIDES"));
+    TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, takt_panel_find(MODBUS_COILS, 40000));
 }
 
 static void test_an_order_has_room_for_all_that_one_request_can_write(void)
@@ -180,7 +181,7 @@ static void test_an_order_has_room_for_all_that_one_request_can_write(void)
     unsigned rows[3] = {0};
 
     for (unsigned i = 0; i < REGISTER_COUNT; i++)
-        rows[panel_registers[i].table] += panel_registers[i].states != PANEL_NEVER;
+        rows[takt_panel_registers[i].table] += takt_panel_registers[i].states != PANEL_NEVER;
     TEST_ASSERT_TRUE(rows[MODBUS_COILS] <= PANEL_ORDER_MAX);
     TEST_ASSERT_TRUE(rows[MODBUS_HOLDINGS] <= PANEL_ORDER_MAX);
 }
@@ -188,11 +189,11 @@ static void test_an_order_has_room_for_all_that_one_request_can_write(void)
 /* The server's own requests are as long as a mailbox: one function 16. */
 static void test_the_mailbox_is_one_request_long(void)
 {
-    const struct panel_register *bytes = &panel_registers[REGISTER_UPLOAD_DATA];
+    const struct panel_register *bytes = &takt_panel_registers[REGISTER_UPLOAD_DATA];
 
     TEST_ASSERT_EQUAL_UINT(MODBUS_WRITE_WORDS_MAX,
                            bytes->address + bytes->words -
-                               panel_registers[REGISTER_UPLOAD_OFFSET].address);
+                               takt_panel_registers[REGISTER_UPLOAD_OFFSET].address);
 }
 
 /* Registers that are the panel's own, and not the controller's. */
@@ -207,7 +208,7 @@ static bool is_own(enum panel_id id)
 static void test_every_value_of_the_snapshot_is_read_back(void)
 {
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
         const enum panel_id id = (enum panel_id)i;
 
         if (!is_number(row) || id == REGISTER_STATE)
@@ -217,7 +218,7 @@ static void test_every_value_of_the_snapshot_is_read_back(void)
                                                   : 54321;
     }
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
         const enum panel_id id = (enum panel_id)i;
         const int64_t value = is_number(row) ? value_of(&one, id) : panel_value(&shown, id);
 
@@ -235,7 +236,7 @@ static void test_the_text_of_an_alarm_is_read_two_characters_a_word(void)
 
 static void test_addresses_that_are_not_there_are_exception_2(void)
 {
-    const struct modbus_map map = panel_client_map(&one);
+    const struct modbus_map map = takt_panel_client_map(&one);
 
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 26, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 399, 2, data));
@@ -254,29 +255,30 @@ static bool is_order(enum panel_id id)
 static void test_every_number_is_ordered_within_its_range_and_refused_outside(void)
 {
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
         const enum panel_id id = (enum panel_id)i;
 
         if (row->states == PANEL_NEVER || !is_number(row) || !is_order(id))
             continue;
         shown.value[REGISTER_WATCHDOG] = 0;
         shown.value[REGISTER_STATE] = PANEL_IDLE;
-        if (!panel_may_write(id, PANEL_IDLE))
+        if (!takt_panel_may_write(id, PANEL_IDLE))
             shown.value[REGISTER_STATE] = PANEL_HELD;
         TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, panel_most(row)),
                                       panel_text(row)->name);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, panel_least(row)),
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, takt_panel_least(row)),
                                       panel_text(row)->name);
         TEST_ASSERT_EQUAL_UINT(1, ordered.count);
         TEST_ASSERT_EQUAL_INT(id, ordered.item[0].id);
-        TEST_ASSERT_EQUAL_INT64_MESSAGE(panel_least(row), ordered.item[0].value,
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(takt_panel_least(row), ordered.item[0].value,
                                         panel_text(row)->name);
         orders = 0;
         if (row->form == PANEL_U16 && panel_most(row) < PANEL_U16_MOST)
             TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE, write_row(&one, id, panel_most(row) + 1),
                                           panel_text(row)->name);
-        if (row->form != PANEL_BIT && panel_least(row) > 0)
-            TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE, write_row(&one, id, panel_least(row) - 1),
+        if (row->form != PANEL_BIT && takt_panel_least(row) > 0)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE,
+                                          write_row(&one, id, takt_panel_least(row) - 1),
                                           panel_text(row)->name);
         TEST_ASSERT_EQUAL_UINT_MESSAGE(0, orders, panel_text(row)->name);
     }
@@ -285,7 +287,7 @@ static void test_every_number_is_ordered_within_its_range_and_refused_outside(vo
 static void test_the_table_says_in_which_states_a_register_is_written(void)
 {
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
-        const struct panel_register *row = &panel_registers[i];
+        const struct panel_register *row = &takt_panel_registers[i];
         const enum panel_id id = (enum panel_id)i;
 
         if (row->states == PANEL_NEVER || !is_number(row) || !is_order(id))
@@ -320,7 +322,7 @@ static void test_a_request_is_ordered_as_a_whole_or_not_at_all(void)
 static void test_half_a_number_is_not_written(void)
 {
     static const uint8_t bytes[] = {0, 1};
-    const uint16_t address = panel_registers[REGISTER_JOG_DISTANCE].address;
+    const uint16_t address = takt_panel_registers[REGISTER_JOG_DISTANCE].address;
 
     TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_words(&one, address, 1, bytes));
     TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_words(&one, (uint16_t)(address + 1), 1, bytes));
@@ -392,8 +394,8 @@ static void test_each_request_of_the_panel_in_control_is_a_sign_of_life(void)
 static void test_control_of_a_client_that_has_left_stays_until_the_watchdog_bites(void)
 {
     (void)write_row(&one, REGISTER_WATCHDOG, 500);
-    panel_client_leave(&one);
-    panel_client_enter(&one, &panel);
+    takt_panel_client_leave(&one);
+    takt_panel_client_enter(&one, &panel);
     TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&one, REGISTER_MODE, 1));
     shown.value[REGISTER_WATCHDOG] = 0;
     TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_MODE, 1));
@@ -422,7 +424,7 @@ static enum modbus_exception send_chunk(uint32_t offset, const char *bytes, uint
     modbus_write16(chunk + 4, size);
     modbus_write16(chunk + 6, check);
     memcpy(chunk + 8, bytes, size);
-    return write_words(&one, panel_registers[REGISTER_UPLOAD_OFFSET].address,
+    return write_words(&one, takt_panel_registers[REGISTER_UPLOAD_OFFSET].address,
                        MODBUS_WRITE_WORDS_MAX, chunk);
 }
 
@@ -430,7 +432,7 @@ static enum modbus_exception send_good(uint32_t offset, const char *bytes)
 {
     const uint16_t size = (uint16_t)strlen(bytes);
 
-    return send_chunk(offset, bytes, size, crc16((const uint8_t *)bytes, size));
+    return send_chunk(offset, bytes, size, takt_crc16((const uint8_t *)bytes, size));
 }
 
 static const char program[] = "G21 G90\nG1 X10 F600\nM2\n";
@@ -444,12 +446,12 @@ static enum modbus_exception begin(uint32_t size, uint32_t crc)
     modbus_write16(words + 4, (uint16_t)(crc >> 16));
     modbus_write16(words + 6, (uint16_t)crc);
     modbus_write16(words + 8, PANEL_UPLOAD_BEGIN);
-    return write_words(&one, panel_registers[REGISTER_UPLOAD_SIZE].address, 5, words);
+    return write_words(&one, takt_panel_registers[REGISTER_UPLOAD_SIZE].address, 5, words);
 }
 
 static uint32_t program_crc(void)
 {
-    return crc32_add(CRC32_START, program, sizeof program - 1);
+    return takt_crc32_add(CRC32_START, program, sizeof program - 1);
 }
 
 static void test_a_program_is_brought_in_chunks_and_committed(void)
@@ -475,8 +477,8 @@ static void test_an_upload_goes_on_where_it_was_left(void)
 {
     (void)begin(sizeof program - 1, program_crc());
     (void)send_good(0, "G21 G90\n");
-    panel_client_leave(&one);
-    panel_client_enter(&one, &panel);
+    takt_panel_client_leave(&one);
+    takt_panel_client_enter(&one, &panel);
     TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(sizeof program - 1, program_crc()));
     TEST_ASSERT_EQUAL_INT64(8, value_of(&one, REGISTER_UPLOAD_RECEIVED));
     TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(5, 5));

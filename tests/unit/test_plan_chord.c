@@ -47,18 +47,18 @@ static void push_circle(const struct plan_limits *limits)
     const struct point start = {{RADIUS_MM}};
     struct move m;
 
-    path_init(&path, limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_ARC_CCW;
     m.plane = PLANE_XY;
     m.end = start;
     m.feed_mm_s = 300.0;
     m.turns = 10;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 /* The largest distance of a chord between two setpoints from the circle. */
@@ -71,10 +71,10 @@ static double run_circle(void)
     enum motion_result result;
 
     do {
-        if (motion_wanted(&motion) != NULL) {
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_motion_build(&motion);
         }
-        result = motion_cycle(&motion, &as_programmed, &record);
+        result = takt_motion_cycle(&motion, &as_programmed, &record);
         if (result == MOTION_CYCLE) {
             const double x = 0.5 * (record.cmd.at[AXIS_X] + last.at[AXIS_X]);
             const double y = 0.5 * (record.cmd.at[AXIS_Y] + last.at[AXIS_Y]);
@@ -94,7 +94,7 @@ static void test_a_slow_cycle_limits_the_feed_by_the_chord_error(void)
     push_circle(&slow);
     const struct block *b = path_read(&path, 0);
 
-    TEST_ASSERT_EQUAL(GOVERNOR_CHORD, block_governor(b, b->feed_program_mm_s));
+    TEST_ASSERT_EQUAL(GOVERNOR_CHORD, takt_block_governor(b, b->feed_program_mm_s));
     TEST_ASSERT_DOUBLE_WITHIN(1e-5,
                               500.0 * maths_sqrt(2.0 * RADIUS_MM * CHORD_MM - CHORD_MM * CHORD_MM),
                               b->feed_max_mm_s);
@@ -118,7 +118,7 @@ static void test_a_cycle_that_is_fast_enough_is_not_limited_by_it(void)
     push_circle(&fast);
     const struct block *b = path_read(&path, 0);
 
-    TEST_ASSERT_TRUE(block_governor(b, b->feed_program_mm_s) != GOVERNOR_CHORD);
+    TEST_ASSERT_TRUE(takt_block_governor(b, b->feed_program_mm_s) != GOVERNOR_CHORD);
     TEST_ASSERT_TRUE(run_circle() < 0.5 * CHORD_MM);
 }
 
@@ -129,20 +129,20 @@ static void push_polygon(const struct plan_limits *limits, double side_mm, doubl
     const struct point start = {{0.0}};
     struct move m;
 
-    path_init(&path, limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_FEED;
     m.feed_mm_s = 300.0;
     for (unsigned i = 0; i < SIDES; i++) {
-        m.end.at[AXIS_X] += side_mm * maths_cos(turn_rad * i);
-        m.end.at[AXIS_Y] += side_mm * maths_sin(turn_rad * i);
+        m.end.at[AXIS_X] += side_mm * takt_maths_cos(turn_rad * i);
+        m.end.at[AXIS_Y] += side_mm * takt_maths_sin(turn_rad * i);
         corner[i] = m.end;
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static double distance_from_line(const struct point *p, const struct point *a,
@@ -172,10 +172,10 @@ static double run_polygon(const struct point *corner)
         off[i] = MATHS_INFINITY;
     }
     do {
-        if (motion_wanted(&motion) != NULL) {
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_motion_build(&motion);
         }
-        result = motion_cycle(&motion, &as_programmed, &record);
+        result = takt_motion_cycle(&motion, &as_programmed, &record);
         for (unsigned i = 0; i < SIDES && result == MOTION_CYCLE; i++) {
             off[i] = maths_min(off[i], distance_from_line(&corner[i], &last, &record.cmd));
         }

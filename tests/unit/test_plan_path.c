@@ -1,4 +1,4 @@
-/* The ring of blocks: room, positions, joints, waits, restart. */
+/* The ring of blocks: room, positions, junctions, waits, restart. */
 #include "plan/path.h"
 
 #include "plan/path_unit.h"
@@ -7,8 +7,8 @@
 #include <unity.h>
 
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 
@@ -16,7 +16,7 @@ void setUp(void)
 {
     const struct point start = {{0}};
 
-    path_init(&path, &limits, &start);
+    takt_path_init(&path, &limits, &start);
 }
 
 void tearDown(void)
@@ -33,14 +33,14 @@ static void push(enum move_kind kind, double x, double y)
     m.turns = 1;
     m.end.at[AXIS_X] = x;
     m.end.at[AXIS_Y] = y;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 static void test_blocks_lie_end_to_end(void)
 {
     push(MOVE_FEED, 10.0, 0.0);
     push(MOVE_FEED, 10.0, 5.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(2, path.closed);
     TEST_ASSERT_EQUAL_UINT64(path_units(10.0), path_at(&path, 1)->start);
     TEST_ASSERT_EQUAL_UINT64(path_units(15.0), path.position);
@@ -52,19 +52,19 @@ static void test_a_block_is_closed_when_its_end_is_known(void)
     TEST_ASSERT_EQUAL(0, path.closed);
     push(MOVE_FEED, 20.0, 0.0);
     TEST_ASSERT_EQUAL(1, path.closed);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(2, path.closed);
 }
 
-static void test_a_straight_joint_is_passed_and_a_corner_is_a_stop(void)
+static void test_a_straight_junction_is_passed_and_a_corner_is_a_stop(void)
 {
     push(MOVE_FEED, 10.0, 0.0);
     push(MOVE_FEED, 20.0, 0.0);
     push(MOVE_FEED, 20.0, 10.0);
-    path_finish(&path);
-    TEST_ASSERT_EQUAL(JOINT_PASSED, path_at(&path, 0)->end);
-    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 1)->end);
-    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 2)->end);
+    takt_path_finish(&path);
+    TEST_ASSERT_EQUAL(JUNCTION_PASSED, path_at(&path, 0)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, path_at(&path, 1)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, path_at(&path, 2)->end);
 }
 
 static void test_a_wait_stops_the_block_before_it(void)
@@ -73,7 +73,7 @@ static void test_a_wait_stops_the_block_before_it(void)
     push(MOVE_DWELL, 0.0, 0.0);
     push(MOVE_FEED, 20.0, 0.0);
     TEST_ASSERT_EQUAL(2, path.closed);
-    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 0)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, path_at(&path, 0)->end);
     TEST_ASSERT_EQUAL_UINT64(0, path_end(&path, 1) - path_at(&path, 1)->start);
     TEST_ASSERT_EQUAL(1, path_read(&path, 1)->number);
 }
@@ -92,15 +92,15 @@ static void test_room_is_bounded_by_what_must_be_kept(void)
 {
     double x = 0.0;
 
-    while (path_has_room(&path)) {
+    while (takt_path_has_room(&path)) {
         x += 1.0;
         push(MOVE_FEED, x, 0.0);
     }
     TEST_ASSERT_EQUAL(PATH_BLOCKS_MAX - RECORD_BEFORE, path.pushed);
-    path_pass(&path);
-    TEST_ASSERT_FALSE(path_has_room(&path));
+    takt_path_pass(&path);
+    TEST_ASSERT_FALSE(takt_path_has_room(&path));
     path.kept = path.first;
-    TEST_ASSERT_TRUE(path_has_room(&path));
+    TEST_ASSERT_TRUE(takt_path_has_room(&path));
 }
 
 static void test_a_restart_forgets_all_blocks(void)
@@ -109,11 +109,11 @@ static void test_a_restart_forgets_all_blocks(void)
 
     push(MOVE_FEED, 10.0, 0.0);
     push(MOVE_FEED, 20.0, 0.0);
-    path_restart(&path, &at, path_units(3.0));
+    takt_path_restart(&path, &at, path_units(3.0));
     TEST_ASSERT_EQUAL(path.pushed, path.first);
     push(MOVE_FEED, 4.0, 0.0);
-    path_finish(&path);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, path_length(&path, path.first));
+    takt_path_finish(&path);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, takt_path_length(&path, path.first));
     TEST_ASSERT_EQUAL_UINT64(path_units(3.0), path_at(&path, path.first)->start);
 }
 
@@ -126,7 +126,7 @@ static void push_blend(double x, double y)
                               .turns = 1,
                               .end = {{x, y}}};
 
-    path_push(&path, &line);
+    takt_path_push(&path, &line);
 }
 
 /* Both ceilings are in use: what smoothing would compute in is one of them. */
@@ -135,11 +135,11 @@ static void test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it(void)
     path.spare = PATH_NO_SPARE;
     push_blend(10.0, 0.0);
     push_blend(10.0, 10.0);
-    path_finish(&path);
-    path_go_on(&path);
+    takt_path_finish(&path);
+    takt_path_go_on(&path);
     TEST_ASSERT_EQUAL(0, path.pushed);
     path.spare = 1;
-    path_go_on(&path);
+    takt_path_go_on(&path);
     TEST_ASSERT_GREATER_THAN(1, path.pushed);
     TEST_ASSERT_EQUAL(path.pushed, path.closed);
 }
@@ -153,9 +153,9 @@ static void test_one_line_within_a_tolerance_is_planned_like_an_exact_one(void)
     push(MOVE_FEED, 30.0, 0.0);
     TEST_ASSERT_EQUAL(3, path.pushed);
     TEST_ASSERT_EQUAL(2, path.closed);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(3, path.pushed);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10.0, path_length(&path, 1));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10.0, takt_path_length(&path, 1));
 }
 
 int main(void)
@@ -163,7 +163,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_blocks_lie_end_to_end);
     RUN_TEST(test_a_block_is_closed_when_its_end_is_known);
-    RUN_TEST(test_a_straight_joint_is_passed_and_a_corner_is_a_stop);
+    RUN_TEST(test_a_straight_junction_is_passed_and_a_corner_is_a_stop);
     RUN_TEST(test_a_wait_stops_the_block_before_it);
     RUN_TEST(test_a_motion_without_length_is_counted_and_dropped);
     RUN_TEST(test_room_is_bounded_by_what_must_be_kept);

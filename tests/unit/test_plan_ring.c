@@ -14,7 +14,7 @@ static const struct plan_limits limits = {63,
                                           {50000, 50000, 50000, 5000, 5000, 5000},
                                           1e-3,
                                           1e-3,
-                                          LAW_JERK,
+                                          RAMP_PROFILE_JERK,
                                           LANDING_SPAN};
 
 static struct path path;
@@ -33,7 +33,7 @@ void setUp(void)
     const struct point start = {{0}};
 
     seed = 1;
-    path_init(&path, &limits, &start);
+    takt_path_init(&path, &limits, &start);
 }
 
 void tearDown(void)
@@ -129,10 +129,10 @@ static void push_any(void)
         }
         e.motion = true;
         e.number = path.motions + 1;
-        TEST_ASSERT_TRUE(move_curve(&e.move, &path.end, &e.curve));
+        TEST_ASSERT_TRUE(takt_move_curve(&e.move, &path.end, &e.curve));
     }
     expected[path.pushed % PATH_BLOCKS_MAX] = e;
-    path_push(&path, &e.move);
+    takt_path_push(&path, &e.move);
 }
 
 static void check_point(const struct point *a, const struct point *b)
@@ -157,8 +157,8 @@ static void check_curve(const struct curve *a, const struct curve *b)
         struct point p, q;
         const double s = a->length_mm * i / 8.0;
 
-        curve_point(a, s, &p);
-        curve_point(b, s, &q);
+        takt_curve_point(a, s, &p);
+        takt_curve_point(b, s, &q);
         check_point(&p, &q);
     }
 }
@@ -210,7 +210,7 @@ static void pass_and_check(void)
     } else {
         check_event(&e->move, &b->move);
     }
-    path_pass(&path);
+    takt_path_pass(&path);
     path.kept = path.first;
 }
 
@@ -221,7 +221,7 @@ static void test_what_is_read_is_what_was_pushed_however_often_the_ring_goes_rou
     /* Records have the lower halves of line and number: both pass 65,536. */
     path.motions = 60000;
     for (unsigned done = 0; done < MOVES;) {
-        while (path_has_room(&path) && below(400) != 0) {
+        while (takt_path_has_room(&path) && below(400) != 0) {
             push_any();
             done++;
         }
@@ -252,19 +252,19 @@ static void test_limits_are_never_above_the_exact_ones(void)
         } else {
             set_line(&m);
         }
-        TEST_ASSERT_TRUE(move_curve(&m, &from, &curve));
-        block_set_motion(&exact, &m, &curve, &limits);
-        block_set_share(&exact, BLOCK_SHARE_MAX * uniform());
-        ring_push(&path.ring, i, i, &exact, NULL);
-        ring_limit(&path.ring, i, &exact);
+        TEST_ASSERT_TRUE(takt_move_curve(&m, &from, &curve));
+        takt_block_set_motion(&exact, &m, &curve, &limits);
+        takt_block_set_jerk_budget(&exact, BLOCK_JERK_BUDGET_MAX * uniform());
+        takt_ring_push(&path.ring, i, i, &exact, NULL);
+        takt_ring_limit(&path.ring, i, &exact);
         const struct path_block *b = ring_at(&path.ring, i);
 
         TEST_ASSERT_TRUE((double)b->a_mm_s2 <= exact.a_mm_s2);
         TEST_ASSERT_TRUE((double)b->j_mm_s3 <= exact.j_mm_s3);
-        TEST_ASSERT_TRUE(path_block_top(b) <= exact.feed_max_mm_s);
+        TEST_ASSERT_TRUE(takt_path_block_top(b) <= exact.feed_max_mm_s);
         TEST_ASSERT_TRUE((double)b->a_mm_s2 >= part * exact.a_mm_s2);
         TEST_ASSERT_TRUE((double)b->j_mm_s3 >= part * exact.j_mm_s3);
-        TEST_ASSERT_TRUE(path_block_top(b) >= part * exact.feed_max_mm_s);
+        TEST_ASSERT_TRUE(takt_path_block_top(b) >= part * exact.feed_max_mm_s);
     }
 }
 
@@ -276,17 +276,17 @@ static void test_a_full_ring_of_bytes_is_no_room(void)
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_FEED;
     m.feed_mm_s = 50.0;
-    while (path_has_room(&path)) {
+    while (takt_path_has_room(&path)) {
         for (unsigned i = 0; i < AXIS_COUNT; i++) {
             m.end.at[i] += 1.0 + uniform();
         }
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
     TEST_ASSERT_LESS_THAN(PATH_BLOCKS_MAX - RECORD_BEFORE, path.pushed);
     TEST_ASSERT_GREATER_THAN(180, path.pushed);
     path.first = 10;
     path.kept = 10;
-    TEST_ASSERT_TRUE(path_has_room(&path));
+    TEST_ASSERT_TRUE(takt_path_has_room(&path));
 }
 
 static void test_lines_of_three_axes_fill_all_blocks(void)
@@ -296,11 +296,11 @@ static void test_lines_of_three_axes_fill_all_blocks(void)
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_FEED;
     m.feed_mm_s = 50.0;
-    while (path_has_room(&path)) {
+    while (takt_path_has_room(&path)) {
         for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
             m.end.at[i] += 1.0 + uniform();
         }
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
     TEST_ASSERT_EQUAL(PATH_BLOCKS_MAX - RECORD_BEFORE, path.pushed);
 }
@@ -312,15 +312,15 @@ static void test_no_more_modes_than_there_are_places_for_is_no_room(void)
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_FEED;
     m.feed_mm_s = 50.0;
-    while (path_has_room(&path)) {
+    while (takt_path_has_room(&path)) {
         m.end.at[AXIS_X] += 1.0;
         m.tool++;
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
     TEST_ASSERT_EQUAL(PATH_MODES_MAX, path.pushed);
     path.first = 1;
     path.kept = 1;
-    TEST_ASSERT_TRUE(path_has_room(&path));
+    TEST_ASSERT_TRUE(takt_path_has_room(&path));
 }
 
 /* Blocks that are not closed yet need room for those that close them. */
@@ -334,12 +334,12 @@ static void test_short_blocks_of_a_mode_each_never_stand_for_ever(void)
     for (unsigned i = 0; i < 1000; i++) {
         m.end.at[AXIS_X] += 0.001;
         m.tool++;
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         while (path.first + 1 < path.closed) {
-            path_pass(&path);
+            takt_path_pass(&path);
         }
         path.kept = path.first;
-        TEST_ASSERT_TRUE(path_has_room(&path));
+        TEST_ASSERT_TRUE(takt_path_has_room(&path));
     }
 }
 
@@ -351,9 +351,9 @@ static struct point random_point(void)
 static void read_back(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
                       const struct record_modes *modes, struct block *b)
 {
-    record_take(record, before, record_begin(record, modes, b), b);
-    (void)record_begin_curve(record, b);
-    record_finish(record, b);
+    takt_record_take(record, before, takt_record_begin(record, modes, b), b);
+    (void)takt_record_begin_curve(record, b);
+    takt_record_finish(record, b);
 }
 
 /* Every piece from its own control point and those of the three before it, one of which has all its own. */
@@ -375,10 +375,10 @@ static void test_a_piece_of_a_smoothed_curve_is_found_from_those_before(void)
         const uint8_t *const before[RECORD_BEFORE] = {
             i > 0 ? bytes[i - 1] : NULL, i > 1 ? bytes[i - 2] : NULL, i > 2 ? bytes[i - 3] : NULL};
 
-        curve_set_spline(&b.curve, &control[i], 0.1 + uniform());
+        takt_curve_set_spline(&b.curve, &control[i], 0.1 + uniform());
         b.move.end = i == 7 ? b.curve.end : control[0];
-        record_modes_of(&b, true, &modes);
-        size[i] = record_write(bytes[i], &b, &control[i], 0, &chain);
+        takt_record_modes_of(&b, true, &modes);
+        size[i] = takt_record_write(bytes[i], &b, &control[i], 0, &chain);
         read_back(bytes[i], before, &modes, &back);
         check_curve(&b.curve, &back.curve);
     }
@@ -401,14 +401,14 @@ static void test_pieces_of_an_involute_are_read_back(void)
     memset(&b, 0, sizeof(b));
     b.move.kind = MOVE_INVOLUTE_CCW;
     b.move.end = to;
-    record_modes_of(&b, false, &modes);
-    TEST_ASSERT_TRUE(curve_set_involute(&whole, &from, &to, PLANE_XY, centre, 1.0, false));
+    takt_record_modes_of(&b, false, &modes);
+    TEST_ASSERT_TRUE(takt_curve_set_involute(&whole, &from, &to, PLANE_XY, centre, 1.0, false));
     for (unsigned i = 0; at_mm < whole.length_mm; i++) {
-        const double to_mm = curve_piece_end(&whole, at_mm);
+        const double to_mm = takt_curve_piece_end(&whole, at_mm);
         const uint8_t *const before[RECORD_BEFORE] = {i > 0 ? bytes[1 - i % 2] : NULL};
 
-        curve_cut(&whole, at_mm, to_mm, &b.curve);
-        (void)record_write(bytes[i % 2], &b, NULL, 0, &chain);
+        takt_curve_cut(&whole, at_mm, to_mm, &b.curve);
+        (void)takt_record_write(bytes[i % 2], &b, NULL, 0, &chain);
         read_back(bytes[i % 2], before, &modes, &back);
         check_curve(&b.curve, &back.curve);
         check_point(&b.move.end, &back.move.end);

@@ -1,6 +1,6 @@
 /* How much of a curve a mm of path is. */
 #include "base/maths.h"
-#include "plan/joint.h"
+#include "plan/junction.h"
 #include "plan/path_unit.h"
 #include "plan/scale.h"
 
@@ -31,8 +31,8 @@ static struct block block_to(double x_mm, double a_rad, double feed_mm_s)
     struct curve c;
     struct block b;
 
-    TEST_ASSERT_TRUE(move_curve(&m, &start, &c));
-    block_set_motion(&b, &m, &c, &limits);
+    TEST_ASSERT_TRUE(takt_move_curve(&m, &start, &c));
+    takt_block_set_motion(&b, &m, &c, &limits);
     return b;
 }
 
@@ -48,7 +48,7 @@ static void test_the_path_is_as_long_as_the_longer_way_of_linear_and_rotary_axes
 static void test_the_programmed_time_stays_what_it_is(void)
 {
     for (int decade = -8; decade < 3; decade++) {
-        const double x_mm = maths_power(10.0, decade);
+        const double x_mm = takt_maths_power(10.0, decade);
         const struct block b = block_to(x_mm, 9.0, x_mm / 5.0);
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.0, b.length_mm / b.feed_program_mm_s);
@@ -60,7 +60,7 @@ static void test_a_turn_has_the_same_limits_beside_any_short_way(void)
     const struct block alone = block_to(0.0, 9.0, 1.0);
 
     for (int decade = -8; decade < 0; decade++) {
-        const struct block b = block_to(maths_power(10.0, decade), 9.0, 1.0);
+        const struct block b = block_to(takt_maths_power(10.0, decade), 9.0, 1.0);
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, alone.feed_cap_mm_s, b.feed_cap_mm_s);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, alone.a_mm_s2, b.a_mm_s2);
@@ -71,27 +71,27 @@ static void test_a_turn_has_the_same_limits_beside_any_short_way(void)
 
 static void test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, scale_of_machine(&limits).linear);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, scale_of_machine(&limits).rotary);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_scale_of_machine(&limits).linear);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_scale_of_machine(&limits).rotary);
     for (int i = 0; i < 7; i++) {
-        const double jerk = 1e3 * maths_power(3.0, -i);
+        const double jerk = 1e3 * takt_maths_power(3.0, -i);
 
         limits.jerk_mm_s3[AXIS_C] = jerk;
-        const double unit = scale_of_machine(&limits).rotary / PATH_UNITS_PER_MM;
+        const double unit = takt_scale_of_machine(&limits).rotary / PATH_UNITS_PER_MM;
 
         TEST_ASSERT_TRUE(unit <= jerk * 1e-9 / 65536.0);
     }
 }
 
-/* Of a second difference, 2 units, and 16 where one is put on an end: 1e-4 of the limit at most. */
+/* A second difference is off by 2 units, and 16 where one is put on an end: 1e-4 of the limit at most. */
 static void test_nor_in_its_acceleration(void)
 {
     limits.jerk_mm_s3[AXIS_C] = 1e6;
     for (int i = 0; i < 7; i++) {
-        const double a = 10.0 * maths_power(3.0, -i);
+        const double a = 10.0 * takt_maths_power(3.0, -i);
 
         limits.acceleration_mm_s2[AXIS_C] = a;
-        const double unit = scale_of_machine(&limits).rotary / PATH_UNITS_PER_MM;
+        const double unit = takt_scale_of_machine(&limits).rotary / PATH_UNITS_PER_MM;
 
         TEST_ASSERT_TRUE(18.0 * unit <= 1e-4 * a * 1e-6);
     }
@@ -99,10 +99,10 @@ static void test_nor_in_its_acceleration(void)
 
 static void test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones(void)
 {
-    limits.law = LAW_GENTLE;
+    limits.profile = RAMP_PROFILE_GENTLE;
     limits.velocity_mm_s[AXIS_Y] = 20000.0;
     limits.jerk_mm_s3[AXIS_C] = 1.0;
-    const struct scale s = scale_of_machine(&limits);
+    const struct scale s = takt_scale_of_machine(&limits);
     const double turn = block_to(1.0, 1e3, 1.0).scale;
 
     TEST_ASSERT_TRUE(s.rotary / PATH_UNITS_PER_MM <= 1.0 * 1e-9 / 65536.0);
@@ -113,19 +113,21 @@ static void test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_o
 
 static void test_sums_over_the_longest_window_stay_within_64_bits(void)
 {
-    static const enum law laws[] = {LAW_JERK, LAW_SMOOTH, LAW_GENTLE};
+    static const enum ramp_profile profiles[] = {RAMP_PROFILE_JERK, RAMP_PROFILE_SMOOTH,
+                                                 RAMP_PROFILE_GENTLE};
 
     limits.cycle_s = 4e-3;
     limits.velocity_mm_s[AXIS_Y] = 20000.0;
     for (unsigned i = 0; i < 3; i++) {
-        const uint32_t cycles = law_cycles_max(laws[i]);
-        double sum = 0.5 * 80.0 * PATH_UNITS_PER_MM * law_window_cycles(laws[i], cycles);
+        const uint32_t cycles = takt_ramp_profile_cycles_max(profiles[i]);
+        double sum =
+            0.5 * 80.0 * PATH_UNITS_PER_MM * takt_ramp_profile_window_cycles(profiles[i], cycles);
 
-        limits.law = laws[i];
-        for (unsigned box = 0; box < law_boxes(laws[i]); box++) {
-            sum *= law_box_cycles(box, cycles);
+        limits.profile = profiles[i];
+        for (unsigned box = 0; box < takt_ramp_profile_boxes(profiles[i]); box++) {
+            sum *= takt_ramp_profile_box_cycles(box, cycles);
         }
-        TEST_ASSERT_TRUE(sum / scale_of_machine(&limits).linear < 9.3e18);
+        TEST_ASSERT_TRUE(sum / takt_scale_of_machine(&limits).linear < 9.3e18);
     }
 }
 
@@ -135,17 +137,17 @@ static void test_the_longest_way_fits_into_path_positions(void)
     TEST_ASSERT_INT64_WITHIN(1024, SCALE_LENGTH_UNITS, block_to(1e-9, 1e18, 1.0).length);
 }
 
-/* The lead point would come to it too late, and be beyond it before the setpoint has slowed down. */
+/* The trapezoidal reference would come to it too late, and be beyond it before the setpoint has slowed down. */
 static void test_what_is_far_slower_than_a_cycle_of_braking_is_come_to_at_rest(void)
 {
     struct block fast = block_to(10.0, 0.0, 50.0);
     struct block slow = block_to(1e-6, 0.0, 1e-5);
 
-    joint_form(&fast, &slow, &limits);
-    TEST_ASSERT_EQUAL(JOINT_STOP, fast.end);
+    takt_junction_form(&fast, &slow, &limits);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, fast.end);
     slow = block_to(10.0, 0.0, 1.0);
-    joint_form(&fast, &slow, &limits);
-    TEST_ASSERT_EQUAL(JOINT_PASSED, fast.end);
+    takt_junction_form(&fast, &slow, &limits);
+    TEST_ASSERT_EQUAL(JUNCTION_PASSED, fast.end);
 }
 
 int main(void)

@@ -12,8 +12,10 @@ static struct ceiling_request request;
 void setUp(void)
 {
     begin_path();
-    request = (struct ceiling_request){
-        .lead = path.position, .span = path.position - 1, .feed_ratio = 1.0, .rapid_ratio = 1.0};
+    request = (struct ceiling_request){.reference = path.position,
+                                       .span = path.position - 1,
+                                       .feed_ratio = 1.0,
+                                       .rapid_ratio = 1.0};
 }
 
 void tearDown(void)
@@ -26,18 +28,18 @@ static void push_dwell(void)
 
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_DWELL;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 static uint32_t cycles_of_first(void)
 {
-    return span_window(&path, &request, 0).cycles;
+    return takt_span_window(&path, &request, 0).cycles;
 }
 
 static void test_a_long_fast_span_has_the_window_of_full_acceleration(void)
 {
     push(100.0, 100.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(20, cycles_of_first());
 }
 
@@ -45,7 +47,7 @@ static void test_a_long_fast_span_has_the_window_of_full_acceleration(void)
 static void test_a_slow_span_has_the_window_of_its_ramp(void)
 {
     push(100.0, 5.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(10, cycles_of_first());
 }
 
@@ -54,7 +56,7 @@ static void test_a_slow_block_at_the_end_asks_for_a_shorter_window(void)
 {
     push(0.5, 50.0);
     push(2.0, 10.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(14, cycles_of_first());
 }
 
@@ -71,7 +73,7 @@ static void test_the_override_does_not_change_the_window(void)
 {
     push(2.0, 60.0);
     push(1.0, 5.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     const uint32_t cycles = cycles_of_first();
 
     request.feed_ratio = 0.3;
@@ -82,23 +84,23 @@ static void test_a_window_is_known_when_the_end_of_the_span_is(void)
 {
     push(100.0, 100.0);
     push(100.0, 100.0);
-    TEST_ASSERT_FALSE(span_window(&path, &request, 0).known);
+    TEST_ASSERT_FALSE(takt_span_window(&path, &request, 0).known);
     push_dwell();
-    TEST_ASSERT_TRUE(span_window(&path, &request, 0).known);
+    TEST_ASSERT_TRUE(takt_span_window(&path, &request, 0).known);
 }
 
-/* The window that a ceiling was made with is kept when more of the span is seen, by a lead point close to it. */
+/* The window that a ceiling was made with is kept when more of the span is seen, by a trapezoidal reference close to it. */
 static void test_a_window_once_promised_is_kept_close_by(void)
 {
     push(0.5, 50.0);
     push(1.0, 10.0);
     push(1.0, 10.0);
-    ceiling_build(&ceiling, &path, &request);
+    takt_ceiling_build(&ceiling, &path, &request);
     const uint32_t cycles = path_at(&path, 0)->cycles;
 
-    path_finish(&path);
-    TEST_ASSERT_TRUE(span_window(&path, &request, 0).cycles != cycles);
-    ceiling_build(&ceiling, &path, &request);
+    takt_path_finish(&path);
+    TEST_ASSERT_TRUE(takt_span_window(&path, &request, 0).cycles != cycles);
+    takt_ceiling_build(&ceiling, &path, &request);
     TEST_ASSERT_EQUAL(cycles, path_at(&path, 0)->cycles);
 }
 
@@ -108,7 +110,7 @@ static void test_a_span_of_many_parts_has_a_window(void)
     for (int i = 0; i < 200; i++) {
         push(0.5 + 0.001 * i, 10.0 + i % 60);
     }
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_TRUE(cycles_of_first() >= 5 && cycles_of_first() <= 20);
 }
 

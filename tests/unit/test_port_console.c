@@ -21,9 +21,9 @@ void setUp(void)
         .embedded = &embedded, .version = "1", .write = hear};
 
     said[0] = '\0';
-    console_lines = embedded_console_get_lines(&console);
+    console_lines = takt_embedded_console_get_lines(&console);
     bench_set_up_with(&console_lines);
-    embedded_console_init(&console, &config);
+    takt_embedded_console_init(&console, &config);
     wait_for(PANEL_IDLE);
 }
 
@@ -34,13 +34,13 @@ void tearDown(void)
 static void type(const char *text)
 {
     for (; *text != '\0'; text++)
-        embedded_console_take_byte(&console, (uint8_t)*text);
+        takt_embedded_console_take_byte(&console, (uint8_t)*text);
 }
 
 static void run_cycles(unsigned count)
 {
     for (unsigned i = 0; i < count; i++) {
-        embedded_console_background(&console);
+        takt_embedded_console_background(&console);
         cycle();
     }
 }

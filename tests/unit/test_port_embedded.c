@@ -53,8 +53,8 @@ static uint64_t digest_of_whole(size_t size)
     const struct point start = {{0}};
 
     wait_for(PANEL_IDLE);
-    source_open_text(&config.source, &whole, program, size);
-    controller_start_program(&embedded.service.controller, &config, &start);
+    takt_source_open_text(&config.source, &whole, program, size);
+    takt_controller_start_program(&embedded.service.controller, &config, &start);
     embedded.service.job = SERVICE_PROGRAM;
     wait_for(PANEL_IDLE);
     return embedded.service.digest;
@@ -194,10 +194,10 @@ static void test_a_machine_that_must_not_run_says_why_and_sends_nothing(void)
         char text[DIAGNOSTIC_TEXT_MAX];
 
         setUp();
-        embedded_refuse(&embedded, &why);
+        takt_embedded_refuse(&embedded, &why);
         for (unsigned k = 0; k < CYCLES_STARVED; k++)
             cycle();
-        (void)diagnostic_text(&why, text);
+        (void)takt_diagnostic_text(&why, text);
         TEST_ASSERT_NOT_NULL(strstr(log_text, text));
         TEST_ASSERT_EQUAL_UINT32(PANEL_ALARM, get(REGISTER_STATE));
         TEST_ASSERT_EQUAL_UINT32(PANEL_ALARM_INTERNAL, get(REGISTER_ALARM));
@@ -211,15 +211,15 @@ static void test_a_machine_that_must_not_run_says_why_and_sends_nothing(void)
 static void test_a_clock_that_steps_back_breaks_no_request(void)
 {
     uint8_t frame[8] = {UNIT, 4, 0, 1, 0, 1};
-    const uint16_t crc = crc16(frame, 6);
+    const uint16_t crc = takt_crc16(frame, 6);
 
     frame[6] = (uint8_t)crc;
     frame[7] = (uint8_t)(crc >> 8);
     now_ns = 50 * (uint64_t)CYCLE_NS;
     replied_length = 0;
     for (unsigned i = 0; i < sizeof frame; i++) {
-        embedded_take_byte(&embedded, frame[i], (uint32_t)(now_ns / 1000) + (i % 2) * 900);
-        embedded_background(&embedded);
+        takt_embedded_take_byte(&embedded, frame[i], (uint32_t)(now_ns / 1000) + (i % 2) * 900);
+        takt_embedded_background(&embedded);
     }
     TEST_ASSERT_EQUAL_UINT(7, replied_length);
 }

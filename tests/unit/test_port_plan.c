@@ -1,7 +1,7 @@
 /* Programs planned ahead, brought through the panel's mailbox while they run. */
 #include "ahead/compile.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "embedded_bench.h"
-#include "offset/offset.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #define TEXT_MAX      4096
 #define PLAN_MAX      65536
 #define CYCLES_LATE   3000
-#define PLANNED_BYTES 12000 /* so many at least: more than what is kept of it anywhere */
+#define PLANNED_BYTES 12000 /* this many at least: more than what is kept of it anywhere */
 
 static char text[TEXT_MAX];
 static size_t text_size;
@@ -46,19 +46,19 @@ static struct compile_config compile_config(void)
     struct compile_config config = {.cycle_us = machine.cycle_us,
                                     .ceiling_percent = 100,
                                     .text_size = (uint32_t)text_size,
-                                    .text_crc = crc32_add(CRC32_START, text, text_size),
+                                    .text_crc = takt_crc32_add(CRC32_START, text, text_size),
                                     .tolerance_part = 1,
                                     .tolerance_mm = 0.01,
                                     .workers = 1};
 
-    controller_plan_limits(&machine, &config.limits);
+    takt_controller_plan_limits(&machine, &config.limits);
     return config;
 }
 
 static void add_moves(struct compile *compile)
 {
     static struct program program;
-    static struct offset offset;
+    static struct cutter_compensation offset;
     static struct parameters parameters;
     const struct controller_config controller = {.machine = &machine, .parameters = &parameters};
     struct program_config config;
@@ -67,12 +67,12 @@ static void add_moves(struct compile *compile)
     struct diagnostic error;
     struct move move;
 
-    parameters_clear(&parameters);
-    controller_program_config(&controller, &config);
-    source_open_text(&source, &whole, text, text_size);
-    program_open(&program, &config, &source);
-    offset_open(&offset, &config);
-    while (offset_next(&offset, &program, &move, &error) == PROGRAM_MOVE)
+    takt_parameters_clear(&parameters);
+    takt_controller_program_config(&controller, &config);
+    takt_source_open_text(&source, &whole, text, text_size);
+    takt_program_open(&program, &config, &source);
+    takt_cutter_compensation_open(&offset, &config);
+    while (takt_cutter_compensation_next(&offset, &program, &move, &error) == PROGRAM_MOVE)
         TEST_ASSERT_EQUAL_INT(COMPILE_DONE, compile_add(compile, &move));
 }
 
@@ -176,8 +176,8 @@ static uint64_t digest_of_whole(void)
 
     at = 0;
     wait_for(PANEL_IDLE);
-    source_open_text(&with_text.source, &whole, text, text_size);
-    controller_start_program(&embedded.service.controller, &with_text, &start);
+    takt_source_open_text(&with_text.source, &whole, text, text_size);
+    takt_controller_start_program(&embedded.service.controller, &with_text, &start);
     embedded.service.job = SERVICE_PROGRAM;
     wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT(PANEL_ALARM_NONE, embedded.service.alarm);
@@ -259,7 +259,7 @@ static void text_of(enum takt_error code, char *why)
 {
     const struct diagnostic d = {.code = code};
 
-    (void)diagnostic_text(&d, why);
+    (void)takt_diagnostic_text(&d, why);
 }
 
 static void test_a_plan_for_something_else_is_refused_with_the_reason(void)
@@ -284,9 +284,9 @@ static void test_a_plan_for_something_else_is_refused_with_the_reason(void)
     write_text(2);
     compile_text();
     upload_text();
-    diagnostic_set(&machine_why, TAKT_ERROR_PLAN_MACHINE, 0, 0, "Y jerk", 6, 40000.0);
-    diagnostic_set_limit(&machine_why, 50000.0);
-    (void)diagnostic_text(&machine_why, why);
+    takt_diagnostic_set(&machine_why, TAKT_ERROR_PLAN_MACHINE, 0, 0, "Y jerk", 6, 40000.0);
+    takt_diagnostic_set_limit(&machine_why, 50000.0);
+    (void)takt_diagnostic_text(&machine_why, why);
     check_refused(MODBUS_VALUE, why);
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_RESET, 1));
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
@@ -318,8 +318,8 @@ static void test_a_plan_whose_memory_is_lent_is_given_up(void)
     write_text(2);
     compile_text();
     begin_plan();
-    TEST_ASSERT_EQUAL_UINT(0, (uintptr_t)plan_queue_lend(&embedded_core.plan) % 8);
-    memset(plan_queue_lend(&embedded_core.plan), 0xAA, PLAN_QUEUE_MAX);
+    TEST_ASSERT_EQUAL_UINT(0, (uintptr_t)takt_plan_queue_lend(&embedded_core.plan) % 8);
+    memset(takt_plan_queue_lend(&embedded_core.plan), 0xAA, PLAN_QUEUE_MAX);
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
     wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_UINT32(PANEL_OUTCOME_COMPLETED, get(REGISTER_OUTCOME));

@@ -98,20 +98,20 @@ static void start(void)
         .may_load = may_load, .borrow = lend_tables, .log = write_log};
     struct panel_config config = {.port = {look, order, alive, NULL}, .store = {.begin = no_room}};
 
-    store_open(&store, &flash);
-    config.settings = settings_upload_open(&upload, &store, &port);
-    panel_init(&panel, &config);
-    panel_client_enter(&client, &panel);
-    map = panel_client_map(&client);
+    takt_store_open(&store, &flash);
+    config.settings = takt_settings_upload_open(&upload, &store, &port);
+    takt_panel_init(&panel, &config);
+    takt_panel_client_enter(&client, &panel);
+    map = takt_panel_client_map(&client);
 }
 
 static void pack(uint32_t cycle_us)
 {
     struct machine machine;
 
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.cycle_us = cycle_us;
-    size = (uint32_t)settings_pack(&machine, NULL, NULL, settings, sizeof settings);
+    size = (uint32_t)takt_settings_pack(&machine, NULL, NULL, settings, sizeof settings);
 }
 
 void setUp(void)
@@ -130,7 +130,7 @@ void tearDown(void)
 
 static enum modbus_exception set(enum panel_id id, uint32_t value)
 {
-    const struct panel_register *row = &panel_registers[id];
+    const struct panel_register *row = &takt_panel_registers[id];
     const uint8_t words[] = {(uint8_t)(value >> 24), (uint8_t)(value >> 16), (uint8_t)(value >> 8),
                              (uint8_t)value};
 
@@ -147,10 +147,10 @@ static enum modbus_exception send_chunk(uint32_t offset)
     modbus_write16(words, (uint16_t)(offset >> 16));
     modbus_write16(words + 2, (uint16_t)offset);
     modbus_write16(words + 4, length);
-    modbus_write16(words + 6, crc16(settings + offset, length));
+    modbus_write16(words + 6, takt_crc16(settings + offset, length));
     memcpy(words + 8, settings + offset, length);
-    return map.write(map.context, MODBUS_HOLDINGS, panel_registers[REGISTER_UPLOAD_OFFSET].address,
-                     sizeof words / 2, words);
+    return map.write(map.context, MODBUS_HOLDINGS,
+                     takt_panel_registers[REGISTER_UPLOAD_OFFSET].address, sizeof words / 2, words);
 }
 
 static enum modbus_exception begin(void)
@@ -158,7 +158,7 @@ static enum modbus_exception begin(void)
     TEST_ASSERT_EQUAL(MODBUS_GOOD, set(REGISTER_UPLOAD_KIND, PANEL_UPLOAD_SETTINGS));
     TEST_ASSERT_EQUAL(MODBUS_GOOD, set(REGISTER_UPLOAD_SIZE, size));
     TEST_ASSERT_EQUAL(MODBUS_GOOD,
-                      set(REGISTER_UPLOAD_CRC, crc32_add(CRC32_START, settings, size)));
+                      set(REGISTER_UPLOAD_CRC, takt_crc32_add(CRC32_START, settings, size)));
     return set(REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_BEGIN);
 }
 
@@ -178,7 +178,7 @@ static enum modbus_exception bring(void)
 static void expect_reason(const char *reason)
 {
     char text[PANEL_ALARM_TEXT_MAX + 1] = "";
-    const struct panel_register *row = &panel_registers[REGISTER_UPLOAD_TEXT];
+    const struct panel_register *row = &takt_panel_registers[REGISTER_UPLOAD_TEXT];
 
     TEST_ASSERT_EQUAL(MODBUS_GOOD,
                       map.read(map.context, row->table, row->address, row->words, (uint8_t *)text));
@@ -196,8 +196,8 @@ static void expect_cycle(uint32_t cycle_us)
     uint32_t length;
 
     start();
-    TEST_ASSERT_TRUE(store_get(&store, &bytes, &length));
-    TEST_ASSERT_TRUE(settings_read(bytes, length, &machine, &tables, NULL, &wrong));
+    TEST_ASSERT_TRUE(takt_store_get(&store, &bytes, &length));
+    TEST_ASSERT_TRUE(takt_settings_read(bytes, length, &machine, &tables, NULL, &wrong));
     TEST_ASSERT_EQUAL(cycle_us, machine.cycle_us);
 }
 

@@ -1,12 +1,12 @@
 /*
  * A program that waits for what the world answers: probing moves (G38) and inputs (M66).
  */
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 
 #include "program_reader.h"
 
 static struct reader reader;
-static struct offset offset;
+static struct cutter_compensation offset;
 
 void setUp(void)
 {
@@ -21,12 +21,12 @@ static void open_waiting(const char *text)
     reader_prepare(&reader);
     reader.config.waits = true;
     reader_text(&reader, text);
-    offset_open(&offset, &reader.config);
+    takt_cutter_compensation_open(&offset, &reader.config);
 }
 
 static enum program_result next(struct move *m)
 {
-    return offset_next(&offset, &reader.program, m, &reader.diagnostic);
+    return takt_cutter_compensation_next(&offset, &reader.program, m, &reader.diagnostic);
 }
 
 static void expect_wait(void)
@@ -69,17 +69,18 @@ static void answer_contact(double contact_z, double rest_z)
         .rest_at = {{1.0, 2.0, rest_z}},
     };
 
-    offset_answer(&offset, &reader.program, &a);
+    takt_cutter_compensation_answer(&offset, &reader.program, &a);
 }
 
 static void answer_value(double value)
 {
-    offset_answer(&offset, &reader.program, &(struct program_answer){.value = value});
+    takt_cutter_compensation_answer(&offset, &reader.program,
+                                    &(struct program_answer){.value = value});
 }
 
 static double parameter(unsigned number)
 {
-    return parameters_get(&reader.parameters, number);
+    return takt_parameters_get(&reader.parameters, number);
 }
 
 static void test_nothing_is_read_behind_a_probing_move_until_it_is_answered(void)
@@ -122,8 +123,8 @@ static void test_without_contact_the_parameters_tell_the_end(void)
 
     open_waiting("F60 G38.3 Z-10\n");
     (void)expect(MOVE_PROBE);
-    offset_answer(&offset, &reader.program,
-                  &(struct program_answer){.contact_at = end, .rest_at = end});
+    takt_cutter_compensation_answer(&offset, &reader.program,
+                                    &(struct program_answer){.contact_at = end, .rest_at = end});
     expect_end();
     TEST_ASSERT_TRUE(parameter(5063) == -10.0);
     TEST_ASSERT_TRUE(parameter(5070) == 0.0);

@@ -104,7 +104,7 @@ static void check_radius_form(uint64_t *state)
     TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(
         2e-6, radius,
         distance(move.end.at[0], move.end.at[1], move.centre_mm[0], move.centre_mm[1]), text);
-    TEST_ASSERT_TRUE_MESSAGE(move_curve(&move, &at, &curve), text);
+    TEST_ASSERT_TRUE_MESSAGE(takt_move_curve(&move, &at, &curve), text);
     TEST_ASSERT_TRUE_MESSAGE((maths_abs(curve.arc.sweep_rad) > MATHS_PI) == longer, text);
 }
 
@@ -160,11 +160,11 @@ static void test_full_circles_need_no_end(void)
 
     reader_open(&reader, "F60 G2 I5\nG3 X0 Y0 J5 P3");
     move = reader_expect(&reader, MOVE_ARC_CW, 0.0, 0.0, 0.0);
-    TEST_ASSERT_TRUE(move_curve(&move, &reader.config.start, &curve));
+    TEST_ASSERT_TRUE(takt_move_curve(&move, &reader.config.start, &curve));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0 * MATHS_PI, curve.length_mm);
     move = reader_expect(&reader, MOVE_ARC_CCW, 0.0, 0.0, 0.0);
     TEST_ASSERT_EQUAL_UINT32(3, move.turns);
-    TEST_ASSERT_TRUE(move_curve(&move, &reader.config.start, &curve));
+    TEST_ASSERT_TRUE(takt_move_curve(&move, &reader.config.start, &curve));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 30.0 * MATHS_PI, curve.length_mm);
 }
 
@@ -212,9 +212,9 @@ static bool sample_exceeds(const struct move *move, const struct point *at, doub
     struct curve curve;
     struct point p;
 
-    TEST_ASSERT_TRUE(move_curve(move, at, &curve));
+    TEST_ASSERT_TRUE(takt_move_curve(move, at, &curve));
     for (int i = 0; i <= SAMPLES; i++) {
-        curve_point(&curve, curve.length_mm * i / SAMPLES, &p);
+        takt_curve_point(&curve, curve.length_mm * i / SAMPLES, &p);
         for (int axis = 0; axis < AXIS_LINEAR_COUNT; axis++) {
             if (maths_abs(p.at[axis]) > limit) {
                 return true;
@@ -236,7 +236,7 @@ static struct move try_arc(const char *text, double limit, bool *refused)
     }
     reader_text(&reader, text);
     (void)reader_next(&reader, MOVE_RAPID);
-    *refused = program_next(&reader.program, &move, &reader.diagnostic) == PROGRAM_ERROR;
+    *refused = takt_program_next(&reader.program, &move, &reader.diagnostic) == PROGRAM_ERROR;
     if (*refused) {
         TEST_ASSERT_EQUAL_INT_MESSAGE(TAKT_ERROR_TRAVEL_EXCEEDED, reader.diagnostic.code, text);
     }
@@ -253,13 +253,13 @@ static void write_random_arc(char *text, size_t size, uint64_t *state, struct po
     const double end_radius = radius + random_between(state, -0.02, 0.02);
 
     memset(start, 0, sizeof(*start));
-    start->at[0] = centre[0] + radius * maths_cos(from);
-    start->at[1] = centre[1] + radius * maths_sin(from);
+    start->at[0] = centre[0] + radius * takt_maths_cos(from);
+    start->at[1] = centre[1] + radius * takt_maths_sin(from);
     (void)snprintf(text, size, "F60 G0 X%.12f Y%.12f\nG%d X%.12f Y%.12f I%.12f J%.12f P%d",
                    start->at[0], start->at[1], random_unit(state) < 0.5 ? 2 : 3,
-                   centre[0] + end_radius * maths_cos(to), centre[1] + end_radius * maths_sin(to),
-                   centre[0] - start->at[0], centre[1] - start->at[1],
-                   1 + (int)random_between(state, 0.0, 2.5));
+                   centre[0] + end_radius * takt_maths_cos(to),
+                   centre[1] + end_radius * takt_maths_sin(to), centre[0] - start->at[0],
+                   centre[1] - start->at[1], 1 + (int)random_between(state, 0.0, 2.5));
 }
 
 /*

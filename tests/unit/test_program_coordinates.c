@@ -20,7 +20,7 @@ static void test_rotary_words_are_degrees(void)
     const struct move move = reader_expect(&reader, MOVE_RAPID, 25.4, 0.0, 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, MATHS_PI / 6, move.end.at[AXIS_A]);
     reader_expect_end(&reader);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 30.0, parameters_get(&reader.parameters, 5));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 30.0, takt_parameters_get(&reader.parameters, 5));
 }
 
 static void test_offsets_add_up(void)
@@ -48,11 +48,11 @@ static void test_selecting_a_system_moves_nothing_and_is_remembered(void)
 {
     reader_open(&reader, "#5381=8\nG59.3");
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(9.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM));
+    TEST_ASSERT_EQUAL_DOUBLE(9.0, takt_parameters_get(&reader.parameters, PARAMETER_SYSTEM));
     reader_text(&reader, "G0 X1 M2");
     (void)reader_expect(&reader, MOVE_RAPID, 9.0, 0.0, 0.0);
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_parameters_get(&reader.parameters, PARAMETER_SYSTEM));
 }
 
 /* cos 30 degrees = sqrt(3) / 2, sin 30 degrees = 1 / 2 */
@@ -91,10 +91,10 @@ static void test_axis_offsets_outlive_the_program(void)
     reader_open(&reader, "G0 X10 A90\nG92 X0 A0");
     (void)reader_next(&reader, MOVE_RAPID);
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&reader.parameters, PARAMETER_AXIS_APPLIED));
-    TEST_ASSERT_EQUAL_DOUBLE(10.0, parameters_get(&reader.parameters, PARAMETER_AXIS_OFFSET));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_parameters_get(&reader.parameters, PARAMETER_AXIS_APPLIED));
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, takt_parameters_get(&reader.parameters, PARAMETER_AXIS_OFFSET));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 90.0,
-                              parameters_get(&reader.parameters, PARAMETER_AXIS_OFFSET + 3));
+                              takt_parameters_get(&reader.parameters, PARAMETER_AXIS_OFFSET + 3));
     reader_text(&reader, "G0 X1 A-90");
     const struct move move = reader_expect(&reader, MOVE_RAPID, 11.0, 0.0, 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, move.end.at[AXIS_A]);
@@ -135,7 +135,7 @@ static void test_machine_coordinates_are_for_straight_absolute_moves(void)
         enum program_result result;
 
         do {
-            result = program_next(&reader.program, &move, &reader.diagnostic);
+            result = takt_program_next(&reader.program, &move, &reader.diagnostic);
         } while (result == PROGRAM_MOVE && move.kind == MOVE_SPINDLE);
         TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, texts[i]);
         TEST_ASSERT_EQUAL_INT(TAKT_ERROR_MACHINE_COORDINATES, reader.diagnostic.code);
@@ -152,22 +152,22 @@ static void test_tool_length_is_that_of_h_or_of_the_tool_in_the_spindle(void)
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 100.0);
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 40.0);
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 2.0);
-    TEST_ASSERT_FALSE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_FALSE(takt_program_warning(&reader.program, &reader.diagnostic));
 }
 
 static void test_an_unknown_tool_has_no_length_and_a_warning(void)
 {
     reader_open(&reader, "G43 H12\nG0 Z1\nG43 H7 Z1");
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 41.0);
-    TEST_ASSERT_FALSE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_FALSE(takt_program_warning(&reader.program, &reader.diagnostic));
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 1.0);
-    TEST_ASSERT_TRUE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_TRUE(takt_program_warning(&reader.program, &reader.diagnostic));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TOOL_UNKNOWN, reader.diagnostic.code);
     TEST_ASSERT_EQUAL_UINT32(3, reader.diagnostic.line);
     TEST_ASSERT_EQUAL_UINT32(5, reader.diagnostic.column);
     TEST_ASSERT_EQUAL_STRING("H7", reader.diagnostic.word);
     TEST_ASSERT_EQUAL_DOUBLE(7.0, reader.diagnostic.value);
-    TEST_ASSERT_FALSE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_FALSE(takt_program_warning(&reader.program, &reader.diagnostic));
 }
 
 static void test_reference_positions_are_machine_positions(void)

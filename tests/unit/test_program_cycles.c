@@ -53,7 +53,7 @@ static void test_no_number_of_pecks_needs_room(void)
     reader_open(&reader, "G0 Z0 F60\nG73 X0 Z-400 R0 Q0.05 M2");
     for (;;) {
         TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE,
-                              program_next(&reader.program, &move, &reader.diagnostic));
+                              takt_program_next(&reader.program, &move, &reader.diagnostic));
         if (move.kind == MOVE_END) {
             break;
         }

@@ -120,18 +120,20 @@ static void test_a_faulty_line_changes_no_parameter(void)
         struct parameters before;
 
         reader_prepare(&reader);
-        (void)parameters_set(&reader.parameters, PARAMETER_AXIS_OFFSET, 5.0);
-        (void)parameters_set(&reader.parameters, PARAMETER_AXIS_APPLIED, i % 2 == 0 ? 1.0 : 0.0);
-        (void)parameters_set(&reader.parameters, PARAMETER_SYSTEM, 1.0);
+        (void)takt_parameters_set(&reader.parameters, PARAMETER_AXIS_OFFSET, 5.0);
+        (void)takt_parameters_set(&reader.parameters, PARAMETER_AXIS_APPLIED,
+                                  i % 2 == 0 ? 1.0 : 0.0);
+        (void)takt_parameters_set(&reader.parameters, PARAMETER_SYSTEM, 1.0);
         before = reader.parameters;
         reader_text(&reader, texts[i]);
         struct move move;
 
         TEST_ASSERT_EQUAL_INT(PROGRAM_ERROR,
-                              program_next(&reader.program, &move, &reader.diagnostic));
+                              takt_program_next(&reader.program, &move, &reader.diagnostic));
         for (unsigned n = 1; n <= PARAMETER_NUMBER_MAX; n++) {
-            TEST_ASSERT_TRUE_MESSAGE(
-                parameters_get(&before, n) == parameters_get(&reader.parameters, n), texts[i]);
+            TEST_ASSERT_TRUE_MESSAGE(takt_parameters_get(&before, n) ==
+                                         takt_parameters_get(&reader.parameters, n),
+                                     texts[i]);
         }
     }
 }
@@ -149,9 +151,10 @@ static void test_a_source_that_fails_ends_the_program(void)
     struct move move;
 
     reader_prepare(&reader);
-    program_open(&reader.program, &reader.config, &source);
+    takt_program_open(&reader.program, &reader.config, &source);
     reader_expect_error(&reader, TAKT_ERROR_SOURCE_UNREADABLE);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END, program_next(&reader.program, &move, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
+                          takt_program_next(&reader.program, &move, &reader.diagnostic));
 }
 
 static void test_a_program_can_be_opened_again(void)
@@ -163,7 +166,7 @@ static void test_a_program_can_be_opened_again(void)
     TEST_ASSERT_EQUAL_UINT32(1, reader_expect(&reader, MOVE_RAPID, 1.0, 0.0, 0.0).line);
     (void)reader_expect(&reader, MOVE_RAPID, 2.0, 0.0, 0.0);
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&reader.parameters, 1));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&reader.parameters, 1));
 }
 
 static void test_the_interpreter_fits_into_its_memory(void)

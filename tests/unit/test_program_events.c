@@ -68,7 +68,7 @@ static void test_the_spindle_s_maximum_is_used_with_a_warning(void)
 {
     reader_open(&reader, "M3 S30000");
     expect_spindle(SPINDLE_CW, 24000.0);
-    TEST_ASSERT_TRUE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_TRUE(takt_program_warning(&reader.program, &reader.diagnostic));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SPINDLE_LIMITED, reader.diagnostic.code);
     TEST_ASSERT_EQUAL_STRING("S30000", reader.diagnostic.word);
     TEST_ASSERT_EQUAL_DOUBLE(24000.0, reader.diagnostic.value);
@@ -80,7 +80,7 @@ static void test_no_more_warnings_are_kept_than_there_is_room_for(void)
 
     reader_open(&reader, "S90000\nS90000\nS90000\nS90000\nS90000\nS90000\nS90000");
     reader_expect_end(&reader);
-    while (program_warning(&reader.program, &reader.diagnostic)) {
+    while (takt_program_warning(&reader.program, &reader.diagnostic)) {
         count++;
         TEST_ASSERT_EQUAL_UINT32(count, reader.diagnostic.line);
     }

@@ -22,7 +22,7 @@ static void check(const char *text, double expected)
     reader_open(&reader, line);
     reader_expect_end(&reader);
     TEST_ASSERT_DOUBLE_WITHIN(1e-14 * (1.0 + maths_abs(expected)), expected,
-                              parameters_get(&reader.parameters, 1));
+                              takt_parameters_get(&reader.parameters, 1));
 }
 
 /* #1 = text must be refused; the column counts from the first character of text. */
@@ -148,11 +148,11 @@ static void test_parameters_of_parameters(void)
 {
     reader_open(&reader, "#2=3 #3=4 #4=5\n#1=##2\n#5=###2\n#6=#[#2+1]\n#7=-#4\n##2=9");
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(4.0, parameters_get(&reader.parameters, 1));
-    TEST_ASSERT_EQUAL_DOUBLE(5.0, parameters_get(&reader.parameters, 5));
-    TEST_ASSERT_EQUAL_DOUBLE(5.0, parameters_get(&reader.parameters, 6));
-    TEST_ASSERT_EQUAL_DOUBLE(-5.0, parameters_get(&reader.parameters, 7));
-    TEST_ASSERT_EQUAL_DOUBLE(9.0, parameters_get(&reader.parameters, 3));
+    TEST_ASSERT_EQUAL_DOUBLE(4.0, takt_parameters_get(&reader.parameters, 1));
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, takt_parameters_get(&reader.parameters, 5));
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, takt_parameters_get(&reader.parameters, 6));
+    TEST_ASSERT_EQUAL_DOUBLE(-5.0, takt_parameters_get(&reader.parameters, 7));
+    TEST_ASSERT_EQUAL_DOUBLE(9.0, takt_parameters_get(&reader.parameters, 3));
 }
 
 static void test_exists_tells_which_names_have_been_set(void)
@@ -161,8 +161,8 @@ static void test_exists_tells_which_names_have_been_set(void)
     check("EXISTS[#5000]", 1.0);
     reader_open(&reader, "#<a>=0\n#1=EXISTS[#<A>]\n#2=EXISTS[#<ab>]");
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&reader.parameters, 1));
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&reader.parameters, 2));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_parameters_get(&reader.parameters, 1));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&reader.parameters, 2));
 }
 
 static void test_missing_pieces(void)

@@ -281,7 +281,7 @@ static void test_words_that_cannot_be_read_are_refused(void)
     expect_refused("M98 P-1\n", TAKT_ERROR_WORD_OUT_OF_RANGE, 1);
 }
 
-/* Writes more behind the text, so many times; there is room. */
+/* Writes more behind the text, this many times; there is room. */
 static void append(char *text, const char *more, unsigned times)
 {
     size_t length = strlen(text);
@@ -352,8 +352,8 @@ static void test_a_program_that_runs_in_a_circle_without_a_move_is_stopped(void)
     expect_refused("o1 while [1]\nG0 X0\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
     expect_refused("F100 G1 X5\no1 while [1]\nG1 X5\nM8\nM9\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
     expect_refused("o1 while [1]\nG4 P0\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
-                          program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(
+        PROGRAM_END, takt_program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
 }
 
 /* A stream: the same text without a way back. */
@@ -362,9 +362,9 @@ static void open_stream(const char *text)
     struct source source;
 
     reader_prepare(&reader);
-    source_open_text(&source, &reader.text, text, strlen(text));
+    takt_source_open_text(&source, &reader.text, text, strlen(text));
     source.seek = NULL;
-    program_open(&reader.program, &reader.config, &source);
+    takt_program_open(&reader.program, &reader.config, &source);
 }
 
 static void expect_no_way_back(const char *text, const char *word)
@@ -401,7 +401,7 @@ static unsigned count_errors(const char *text)
 
     reader_open(&reader, text);
     do {
-        result = program_next(&reader.program, &move, &reader.diagnostic);
+        result = takt_program_next(&reader.program, &move, &reader.diagnostic);
         errors += result == PROGRAM_ERROR ? 1U : 0U;
     } while (result != PROGRAM_END);
     return errors;
@@ -436,7 +436,7 @@ static void test_lines_are_not_read_again_more_often_than_the_host_lets_them(voi
     reader.config.repeats_max = 100;
     reader_text(&reader, "o1 while [1]\nG0 X1\nG0 X0\no1 endwhile\n");
     for (unsigned i = 0; i < 100 && result == PROGRAM_MOVE; i++) {
-        result = program_next(&reader.program, &move, &reader.diagnostic);
+        result = takt_program_next(&reader.program, &move, &reader.diagnostic);
     }
     TEST_ASSERT_EQUAL_INT(PROGRAM_ERROR, result);
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_ENDLESS, reader.diagnostic.code);
@@ -452,10 +452,11 @@ static void test_a_program_that_goes_back_to_its_beginning_is_read_for_long_enou
     reader_text(&reader, "G0 X1\nG0 X0\nM99\n");
     for (unsigned i = 0; i < 100 && move.kind != MOVE_END; i++) {
         TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE,
-                              program_next(&reader.program, &move, &reader.diagnostic));
+                              takt_program_next(&reader.program, &move, &reader.diagnostic));
     }
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END, program_next(&reader.program, &move, &reader.diagnostic));
-    TEST_ASSERT_TRUE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
+                          takt_program_next(&reader.program, &move, &reader.diagnostic));
+    TEST_ASSERT_TRUE(takt_program_warning(&reader.program, &reader.diagnostic));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_REPEATS, reader.diagnostic.code);
 }
 

@@ -134,7 +134,8 @@ static void expect_never(uint32_t line, const char *text)
     open_at(line, text);
     reader_expect_error(&reader, TAKT_ERROR_FROM_LINE_MISSED);
     TEST_ASSERT_EQUAL_DOUBLE(line, reader.diagnostic.value);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END, program_next(&reader.program, &move, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
+                          takt_program_next(&reader.program, &move, &reader.diagnostic));
 }
 
 static void test_a_line_that_is_never_executed_is_an_error(void)
@@ -149,8 +150,8 @@ static void test_nobody_starts_inside_a_compensated_contour(void)
 {
     open_at(4, "F100 G41 D5\nG1 X50\nX100\nX150\nG40 X200\n");
     reader_expect_error(&reader, TAKT_ERROR_FROM_LINE_CUTTER);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
-                          program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(
+        PROGRAM_END, takt_program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
 }
 
 static void test_nobody_starts_behind_what_a_probe_would_have_found(void)
@@ -158,8 +159,8 @@ static void test_nobody_starts_behind_what_a_probe_would_have_found(void)
     open_at(3, "F100 G38.3 Z-5\nG0 Z5\nX#5061\n");
     reader_expect_error(&reader, TAKT_ERROR_FROM_LINE_PROBE);
     TEST_ASSERT_EQUAL_UINT(1, reader.diagnostic.line);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
-                          program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(
+        PROGRAM_END, takt_program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
 }
 
 static void test_nobody_starts_at_a_place_out_of_the_travel(void)
@@ -169,8 +170,8 @@ static void test_nobody_starts_at_a_place_out_of_the_travel(void)
     reader_expect_error(&reader, TAKT_ERROR_TRAVEL_EXCEEDED);
     TEST_ASSERT_EQUAL_UINT(4, reader.diagnostic.line);
     TEST_ASSERT_EQUAL_STRING("Y", reader.diagnostic.word);
-    TEST_ASSERT_EQUAL_INT(PROGRAM_END,
-                          program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(
+        PROGRAM_END, takt_program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
 }
 
 static void test_errors_before_the_line_are_told(void)

@@ -23,8 +23,8 @@ static void open_bytes(const char *bytes, size_t length)
 {
     struct source source;
 
-    source_open_text(&source, &context, bytes, length);
-    lexer_open(&lexer, &source);
+    takt_source_open_text(&source, &context, bytes, length);
+    takt_lexer_open(&lexer, &source);
 }
 
 static void open_text(const char *text)
@@ -34,7 +34,7 @@ static void open_text(const char *text)
 
 static void expect_line(uint32_t line, const char *text)
 {
-    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, takt_lexer_next_line(&lexer, &diagnostic));
     TEST_ASSERT_EQUAL_UINT32(line, lexer.line);
     TEST_ASSERT_EQUAL_STRING(text, lexer.text);
     TEST_ASSERT_EQUAL_UINT(strlen(text), lexer.length);
@@ -42,7 +42,7 @@ static void expect_line(uint32_t line, const char *text)
 
 static void expect_error(enum takt_error code, uint32_t line, uint32_t column)
 {
-    TEST_ASSERT_EQUAL_INT(LEXER_ERROR, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(LEXER_ERROR, takt_lexer_next_line(&lexer, &diagnostic));
     TEST_ASSERT_EQUAL_INT(code, diagnostic.code);
     TEST_ASSERT_EQUAL_UINT32(line, diagnostic.line);
     TEST_ASSERT_EQUAL_UINT32(column, diagnostic.column);
@@ -50,7 +50,7 @@ static void expect_error(enum takt_error code, uint32_t line, uint32_t column)
 
 static void expect_end(void)
 {
-    TEST_ASSERT_EQUAL_INT(LEXER_END, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(LEXER_END, takt_lexer_next_line(&lexer, &diagnostic));
 }
 
 static void test_spaces_and_case_do_not_count(void)
@@ -64,11 +64,11 @@ static void test_columns_are_those_of_the_text(void)
 {
     open_text("  G1 (comment) X2");
     expect_line(1, "g1x2");
-    TEST_ASSERT_EQUAL_UINT(3, lexer_column(&lexer, 0));
-    TEST_ASSERT_EQUAL_UINT(4, lexer_column(&lexer, 1));
-    TEST_ASSERT_EQUAL_UINT(16, lexer_column(&lexer, 2));
-    TEST_ASSERT_EQUAL_UINT(17, lexer_column(&lexer, 3));
-    TEST_ASSERT_EQUAL_UINT(18, lexer_column(&lexer, 4));
+    TEST_ASSERT_EQUAL_UINT(3, takt_lexer_column(&lexer, 0));
+    TEST_ASSERT_EQUAL_UINT(4, takt_lexer_column(&lexer, 1));
+    TEST_ASSERT_EQUAL_UINT(16, takt_lexer_column(&lexer, 2));
+    TEST_ASSERT_EQUAL_UINT(17, takt_lexer_column(&lexer, 3));
+    TEST_ASSERT_EQUAL_UINT(18, takt_lexer_column(&lexer, 4));
 }
 
 static void test_comments_are_left_out(void)
@@ -120,9 +120,9 @@ static void expect_comment(const char *comment)
     unsigned at = 0;
 
     for (; comment[at] != '\0'; at++) {
-        TEST_ASSERT_EQUAL_INT(comment[at], lexer_comment(&lexer, at));
+        TEST_ASSERT_EQUAL_INT(comment[at], takt_lexer_comment(&lexer, at));
     }
-    TEST_ASSERT_EQUAL_INT('\0', lexer_comment(&lexer, at));
+    TEST_ASSERT_EQUAL_INT('\0', takt_lexer_comment(&lexer, at));
 }
 
 static void test_the_last_comment_of_a_line_is_kept_as_it_stands_there(void)
@@ -146,12 +146,12 @@ static void test_text_and_comment_fill_a_line(void)
     text[100] = '(';
     text[PROGRAM_LINE_MAX - 1] = ')';
     open_text(text);
-    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, takt_lexer_next_line(&lexer, &diagnostic));
     TEST_ASSERT_EQUAL_UINT(100, lexer.length);
     TEST_ASSERT_EQUAL_UINT(PROGRAM_LINE_MAX - 102, lexer.comment_length);
     TEST_ASSERT_EQUAL_INT('x', lexer.text[99]);
     TEST_ASSERT_EQUAL_INT('\0', lexer.text[100]);
-    TEST_ASSERT_EQUAL_INT('X', lexer_comment(&lexer, lexer.comment_length - 1U));
+    TEST_ASSERT_EQUAL_INT('X', takt_lexer_comment(&lexer, lexer.comment_length - 1U));
 }
 
 /* "x1 (" */
@@ -184,13 +184,13 @@ static void test_the_end_behind_a_comment_has_its_column_or_none(void)
     begin_comment(text);
     text[299] = ')';
     open_bytes(text, 300);
-    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
-    TEST_ASSERT_EQUAL_UINT(301, lexer_column(&lexer, 2));
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, takt_lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT(301, takt_lexer_column(&lexer, 2));
     text[299] = 'c';
     text[sizeof(text) - 1] = ')';
     open_bytes(text, sizeof(text));
-    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
-    TEST_ASSERT_EQUAL_UINT(0, lexer_column(&lexer, 2));
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, takt_lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT(0, takt_lexer_column(&lexer, 2));
 }
 
 static void test_the_first_line_goes_on_with_none(void)
@@ -208,7 +208,7 @@ static void test_a_line_of_the_largest_length_is_read(void)
     memset(text, 'X', PROGRAM_LINE_MAX);
     memcpy(text + PROGRAM_LINE_MAX, "\r\n", 3);
     open_text(text);
-    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, takt_lexer_next_line(&lexer, &diagnostic));
     TEST_ASSERT_EQUAL_UINT(PROGRAM_LINE_MAX, lexer.length);
     TEST_ASSERT_EQUAL_INT('x', lexer.text[PROGRAM_LINE_MAX - 1]);
     TEST_ASSERT_EQUAL_INT('\0', lexer.text[PROGRAM_LINE_MAX]);
@@ -262,7 +262,7 @@ static void test_a_line_of_a_megabyte_is_passed_over(void)
     struct generated text = {0, LONG_LINE_LENGTH};
     const struct source source = {generated_read, NULL, &text};
 
-    lexer_open(&lexer, &source);
+    takt_lexer_open(&lexer, &source);
     expect_line(1, "x1");
     expect_error(TAKT_ERROR_LINE_TOO_LONG, 2, PROGRAM_LINE_MAX + 1);
     expect_line(3, "y2");
@@ -304,7 +304,7 @@ static void test_it_does_not_matter_how_the_source_cuts_the_text(void)
     const struct source source = {read_one_byte, NULL, &context};
 
     open_text(text);
-    lexer_open(&lexer, &source);
+    takt_lexer_open(&lexer, &source);
     expect_line(1, "g0x1");
     expect_line(2, "y2");
     expect_line(3, "");
@@ -331,8 +331,8 @@ static void test_a_source_that_fails_is_told(void)
     int calls = 0;
     const struct source source = {read_and_fail, NULL, &calls};
 
-    lexer_open(&lexer, &source);
-    TEST_ASSERT_EQUAL_INT(LEXER_UNREADABLE, lexer_next_line(&lexer, &diagnostic));
+    takt_lexer_open(&lexer, &source);
+    TEST_ASSERT_EQUAL_INT(LEXER_UNREADABLE, takt_lexer_next_line(&lexer, &diagnostic));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SOURCE_UNREADABLE, diagnostic.code);
     TEST_ASSERT_EQUAL_UINT32(1, diagnostic.line);
 }
@@ -342,7 +342,7 @@ static void test_a_text_source_can_be_set_back(void)
     struct source source;
     char byte;
 
-    source_open_text(&source, &context, "ab", 2);
+    takt_source_open_text(&source, &context, "ab", 2);
     TEST_ASSERT_EQUAL_INT(1, source.read(source.context, &byte, 1));
     TEST_ASSERT_TRUE(source.seek(source.context, 0));
     TEST_ASSERT_EQUAL_INT(1, source.read(source.context, &byte, 1));

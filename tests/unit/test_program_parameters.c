@@ -15,17 +15,17 @@ void tearDown(void)
 
 static double parameter(unsigned number)
 {
-    return parameters_get(&reader.parameters, number);
+    return takt_parameters_get(&reader.parameters, number);
 }
 
 static void test_a_parameter_never_set_is_zero(void)
 {
     struct parameters p;
 
-    parameters_clear(&p);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, 1));
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, 31));
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, PARAMETER_NUMBER_MAX));
+    takt_parameters_clear(&p);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&p, 1));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&p, 31));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&p, PARAMETER_NUMBER_MAX));
 }
 
 /* Numbers in an order that jumps about: 7919 is prime to 5601. */
@@ -33,16 +33,16 @@ static void test_many_parameters_keep_their_values_in_any_order(void)
 {
     struct parameters p;
 
-    parameters_clear(&p);
+    takt_parameters_clear(&p);
     for (unsigned i = 0; i < PARAMETERS_MAX; i++) {
         const unsigned number = 1 + i * 7919U % PARAMETER_NUMBER_MAX;
 
-        TEST_ASSERT_TRUE(parameters_set(&p, number, number + 0.5));
+        TEST_ASSERT_TRUE(takt_parameters_set(&p, number, number + 0.5));
     }
     for (unsigned i = 0; i < PARAMETERS_MAX; i++) {
         const unsigned number = 1 + i * 7919U % PARAMETER_NUMBER_MAX;
 
-        TEST_ASSERT_EQUAL_DOUBLE(number + 0.5, parameters_get(&p, number));
+        TEST_ASSERT_EQUAL_DOUBLE(number + 0.5, takt_parameters_get(&p, number));
     }
 }
 
@@ -50,37 +50,37 @@ static void test_a_full_store_refuses_only_what_needs_room(void)
 {
     struct parameters p;
 
-    parameters_clear(&p);
+    takt_parameters_clear(&p);
     for (unsigned i = 0; i < PARAMETERS_MAX; i++) {
-        TEST_ASSERT_TRUE(parameters_set(&p, 100 + i, 1.0));
+        TEST_ASSERT_TRUE(takt_parameters_set(&p, 100 + i, 1.0));
     }
-    TEST_ASSERT_FALSE(parameters_set(&p, 5000, 1.0));
-    TEST_ASSERT_TRUE(parameters_set(&p, 5000, 0.0));
-    TEST_ASSERT_TRUE(parameters_set(&p, 100, 2.0));
-    TEST_ASSERT_TRUE(parameters_set(&p, 30, 3.0));
-    TEST_ASSERT_EQUAL_DOUBLE(2.0, parameters_get(&p, 100));
-    TEST_ASSERT_EQUAL_DOUBLE(3.0, parameters_get(&p, 30));
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, 5000));
+    TEST_ASSERT_FALSE(takt_parameters_set(&p, 5000, 1.0));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 5000, 0.0));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 100, 2.0));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 30, 3.0));
+    TEST_ASSERT_EQUAL_DOUBLE(2.0, takt_parameters_get(&p, 100));
+    TEST_ASSERT_EQUAL_DOUBLE(3.0, takt_parameters_get(&p, 30));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&p, 5000));
 }
 
 static void test_parameters_set_back_to_zero_make_room_for_others(void)
 {
     struct parameters p;
 
-    parameters_clear(&p);
+    takt_parameters_clear(&p);
     for (unsigned i = 0; i < PARAMETERS_MAX; i++) {
-        TEST_ASSERT_TRUE(parameters_set(&p, 100 + i, 100.0 + i));
+        TEST_ASSERT_TRUE(takt_parameters_set(&p, 100 + i, 100.0 + i));
     }
-    TEST_ASSERT_TRUE(parameters_set(&p, 100, 0.0));
-    TEST_ASSERT_TRUE(parameters_set(&p, 777, 0.0));
-    TEST_ASSERT_TRUE(parameters_set(&p, 5000, 1.0));
-    TEST_ASSERT_TRUE(parameters_set(&p, 31, 2.0));
-    TEST_ASSERT_FALSE(parameters_set(&p, 777, 3.0));
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&p, 5000));
-    TEST_ASSERT_EQUAL_DOUBLE(2.0, parameters_get(&p, 31));
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, 100));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 100, 0.0));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 777, 0.0));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 5000, 1.0));
+    TEST_ASSERT_TRUE(takt_parameters_set(&p, 31, 2.0));
+    TEST_ASSERT_FALSE(takt_parameters_set(&p, 777, 3.0));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_parameters_get(&p, 5000));
+    TEST_ASSERT_EQUAL_DOUBLE(2.0, takt_parameters_get(&p, 31));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, takt_parameters_get(&p, 100));
     for (unsigned i = 1; i < PARAMETERS_MAX; i++) {
-        TEST_ASSERT_EQUAL_DOUBLE(i == 677 ? 0.0 : 100.0 + i, parameters_get(&p, 100 + i));
+        TEST_ASSERT_EQUAL_DOUBLE(i == 677 ? 0.0 : 100.0 + i, takt_parameters_get(&p, 100 + i));
     }
 }
 
@@ -91,7 +91,7 @@ static void test_a_faulty_line_in_a_full_store_assigns_nothing(void)
 
     reader_prepare(&reader);
     for (unsigned number = 100; number <= last; number++) {
-        TEST_ASSERT_TRUE(parameters_set(&reader.parameters, number, 1.0));
+        TEST_ASSERT_TRUE(takt_parameters_set(&reader.parameters, number, 1.0));
     }
     reader_text(&reader, "#100=0 #5000=2 #5001=3\n"); /* #5220 has the last place */
     reader_expect_error(&reader, TAKT_ERROR_PARAMETERS_FULL);
@@ -108,19 +108,19 @@ static void test_listing_goes_by_number_and_leaves_zeros_out(void)
     unsigned number = 0;
     double value;
 
-    parameters_clear(&p);
-    (void)parameters_set(&p, 5221, 4.0);
-    (void)parameters_set(&p, 30, 2.0);
-    (void)parameters_set(&p, 100, 1.0);
-    (void)parameters_set(&p, 100, 0.0);
-    (void)parameters_set(&p, 31, 3.0);
-    (void)parameters_set(&p, 3, 1.0);
+    takt_parameters_clear(&p);
+    (void)takt_parameters_set(&p, 5221, 4.0);
+    (void)takt_parameters_set(&p, 30, 2.0);
+    (void)takt_parameters_set(&p, 100, 1.0);
+    (void)takt_parameters_set(&p, 100, 0.0);
+    (void)takt_parameters_set(&p, 31, 3.0);
+    (void)takt_parameters_set(&p, 3, 1.0);
     for (unsigned i = 0; i < 4; i++) {
-        TEST_ASSERT_TRUE(parameters_next(&p, &number, &value));
+        TEST_ASSERT_TRUE(takt_parameters_next(&p, &number, &value));
         TEST_ASSERT_EQUAL_UINT(expected[i], number);
         TEST_ASSERT_EQUAL_DOUBLE(i + 1.0, value);
     }
-    TEST_ASSERT_FALSE(parameters_next(&p, &number, &value));
+    TEST_ASSERT_FALSE(takt_parameters_next(&p, &number, &value));
 }
 
 static void test_assignments_take_effect_after_their_line(void)
@@ -240,7 +240,7 @@ static void test_numbers_run_out(void)
 {
     reader_prepare(&reader);
     for (unsigned i = 0; i < PARAMETERS_MAX; i++) {
-        (void)parameters_set(&reader.parameters, 100 + i, 1.0);
+        (void)takt_parameters_set(&reader.parameters, 100 + i, 1.0);
     }
     reader_text(&reader, "#100=2 #3000=1\nG92 X5\n#101=2");
     reader_expect_error(&reader, TAKT_ERROR_PARAMETERS_FULL);

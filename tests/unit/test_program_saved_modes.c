@@ -37,7 +37,7 @@ static void test_m72_brings_all_saved_modes_back(void)
     move = reader_expect(&reader, MOVE_FEED, 1.0, 0.0, 0.0);
     TEST_ASSERT_EQUAL_DOUBLE(1.0, move.feed_mm_s);
     TEST_ASSERT_EQUAL_INT(PATH_EXACT, move.path);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_parameters_get(&reader.parameters, PARAMETER_SYSTEM));
 }
 
 static void test_m72_leaves_position_offsets_and_motion_alone(void)
@@ -95,14 +95,15 @@ static void expect_value(const char *text, const char *name, double value)
     reader_open(&reader, program);
     for (;;) {
         struct move move;
-        const enum program_result result = program_next(&reader.program, &move, &reader.diagnostic);
+        const enum program_result result =
+            takt_program_next(&reader.program, &move, &reader.diagnostic);
 
         TEST_ASSERT_MESSAGE(result != PROGRAM_ERROR, program);
         if (result == PROGRAM_END) {
             break;
         }
     }
-    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(value, parameters_get(&reader.parameters, 100), program);
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(value, takt_parameters_get(&reader.parameters, 100), program);
 }
 
 struct expectation {

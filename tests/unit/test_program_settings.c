@@ -18,7 +18,8 @@ static void test_g10_l2_moves_the_system_in_use(void)
     reader_expect_rapid(&reader, 7.0, 0.0, 0.0);
     reader_expect_rapid(&reader, 0.0, 0.0, 7.0);
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(6.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM_OFFSET + 1));
+    TEST_ASSERT_EQUAL_DOUBLE(6.0,
+                             takt_parameters_get(&reader.parameters, PARAMETER_SYSTEM_OFFSET + 1));
 }
 
 static void test_g10_l20_gives_the_position_its_coordinates(void)
@@ -79,11 +80,11 @@ static void test_all_parameters_of_a_line_are_taken_back(void)
     (void)reader_next(&reader, MOVE_INPUT);
     (void)reader_next(&reader, MOVE_PROBE);
     reader_expect_end(&reader);
-    TEST_ASSERT_EQUAL_DOUBLE(4.0, parameters_get(&reader.parameters, PARAMETER_REFERENCE_1));
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM));
+    TEST_ASSERT_EQUAL_DOUBLE(4.0, takt_parameters_get(&reader.parameters, PARAMETER_REFERENCE_1));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_parameters_get(&reader.parameters, PARAMETER_SYSTEM));
     reader_text(&reader, "F60\nG28.1 G92.1 G55 M66 P1 G38.2 X600");
     reader_expect_error(&reader, TAKT_ERROR_TRAVEL_EXCEEDED);
-    TEST_ASSERT_EQUAL_DOUBLE(4.0, parameters_get(&reader.parameters, PARAMETER_REFERENCE_1));
+    TEST_ASSERT_EQUAL_DOUBLE(4.0, takt_parameters_get(&reader.parameters, PARAMETER_REFERENCE_1));
 }
 
 static void test_more_tools_than_there_is_room_for_are_refused(void)
@@ -124,7 +125,7 @@ static void test_a_probe_that_answers_ends_the_move_there(void)
 
     TEST_ASSERT_FALSE(move.probe_away);
     TEST_ASSERT_FALSE(move.probe_optional);
-    program_answer(&reader.program, &answer);
+    takt_program_answer(&reader.program, &answer);
     reader_expect_rapid(&reader, 4.5, 3.0, 1.0);
 }
 
@@ -148,7 +149,7 @@ static void test_a_feed_per_revolution_is_told_with_what_it_comes_to(void)
     move = reader_next(&reader, MOVE_FEED);
     TEST_ASSERT_EQUAL_DOUBLE(0.2, move.feed_rev_mm);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.0, move.feed_mm_s);
-    TEST_ASSERT_FALSE(program_warning(&reader.program, &warning));
+    TEST_ASSERT_FALSE(takt_program_warning(&reader.program, &warning));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, reader_next(&reader, MOVE_FEED).feed_rev_mm);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, reader_next(&reader, MOVE_FEED).feed_rev_mm);
 }
@@ -213,10 +214,10 @@ static void test_g64_tells_how_far_moves_may_be_merged(void)
 }
 
 /* The involute of a circle of radius r about 0, unrolled by phi. */
-static void involute_point(double r, double phi, double way, double *x, double *y)
+static void takt_involute_point(double r, double phi, double way, double *x, double *y)
 {
-    *x = r * (maths_cos(phi) + phi * maths_sin(phi));
-    *y = way * r * (maths_sin(phi) - phi * maths_cos(phi));
+    *x = r * (takt_maths_cos(phi) + phi * takt_maths_sin(phi));
+    *y = way * r * (takt_maths_sin(phi) - phi * takt_maths_cos(phi));
 }
 
 /* From phi to phi, turning by way; off: how far the end lies off the involute, along the normal there. */
@@ -228,19 +229,19 @@ static enum program_result read_involute(double from, double to, double way, dou
     double x[2];
     double y[2];
 
-    involute_point(r, from, way, &x[0], &y[0]);
-    involute_point(r, to, way, &x[1], &y[1]);
-    x[1] += off * maths_sin(to);
-    y[1] -= off * way * maths_cos(to);
+    takt_involute_point(r, from, way, &x[0], &y[0]);
+    takt_involute_point(r, to, way, &x[1], &y[1]);
+    x[1] += off * takt_maths_sin(to);
+    y[1] -= off * way * takt_maths_cos(to);
     reader_open(&reader, "");
-    parameters_set(&reader.parameters, 1, x[0]);
-    parameters_set(&reader.parameters, 2, y[0]);
-    parameters_set(&reader.parameters, 3, x[1]);
-    parameters_set(&reader.parameters, 4, y[1]);
+    takt_parameters_set(&reader.parameters, 1, x[0]);
+    takt_parameters_set(&reader.parameters, 2, y[0]);
+    takt_parameters_set(&reader.parameters, 3, x[1]);
+    takt_parameters_set(&reader.parameters, 4, y[1]);
     reader_text(&reader, ccw ? "F60 G0 X#1 Y#2\nG3.2 X#3 Y#4 I[0-#1] J[0-#2] R4"
                              : "F60 G0 X#1 Y#2\nG2.2 X#3 Y#4 I[0-#1] J[0-#2] R4");
     (void)reader_next(&reader, MOVE_RAPID);
-    return program_next(&reader.program, &move, &reader.diagnostic);
+    return takt_program_next(&reader.program, &move, &reader.diagnostic);
 }
 
 static void test_any_piece_of_an_involute_is_read(void)

@@ -44,7 +44,7 @@ static void add_numbered(const char *pattern, unsigned number)
     }
 }
 
-/* The same so many times, with 0, 1 ... */
+/* The same this many times, with 0, 1 ... */
 static void add(const char *pattern, unsigned times)
 {
     for (unsigned i = 0; i < times; i++) {

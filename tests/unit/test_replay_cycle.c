@@ -29,10 +29,10 @@ static void add_record(enum replay_kind kind, const uint8_t *holds, size_t size)
     uint8_t *record = bytes + length;
 
     record[0] = (uint8_t)kind;
-    replay_put(record + 1, size, 2);
+    takt_replay_put(record + 1, size, 2);
     memcpy(record + REPLAY_RECORD_HEAD, holds, size);
-    crc = crc32_add(crc, record, REPLAY_RECORD_HEAD + size);
-    replay_put(record + REPLAY_RECORD_HEAD + size, crc, REPLAY_RECORD_TAIL);
+    crc = takt_crc32_add(crc, record, REPLAY_RECORD_HEAD + size);
+    takt_replay_put(record + REPLAY_RECORD_HEAD + size, crc, REPLAY_RECORD_TAIL);
     length += REPLAY_RECORD_HEAD + size + REPLAY_RECORD_TAIL;
 }
 
@@ -42,9 +42,9 @@ static void add_section(uint32_t first_block)
     uint8_t section[REPLAY_SECTION_BYTES] = {0};
     uint8_t knots[26] = {4};
 
-    replay_put(section, first_block, 4);
-    replay_put(section + 4, 1, 4);
-    replay_put(section + 8, 4, 4);
+    takt_replay_put(section, first_block, 4);
+    takt_replay_put(section + 4, 1, 4);
+    takt_replay_put(section + 8, 4, 4);
     add_record(REPLAY_SECTION, section, sizeof(section));
     add_record(REPLAY_KNOTS, knots, sizeof(knots));
     add_record(REPLAY_END, section, 0);
@@ -70,15 +70,15 @@ void setUp(void)
         limits.acceleration_mm_s2[i] = 1000;
         limits.jerk_mm_s3[i] = 50000;
     }
-    path_init(&path, &limits, &start);
-    motion_init(&motion, &path, &start, false);
-    handover_allow_all(&motion);
+    takt_path_init(&path, &limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
+    takt_handover_allow_all(&motion);
     line.end.at[AXIS_X] = 1;
-    path_push(&path, &line);
-    path_finish(&path);
-    path_go_on(&path);
-    motion_build(&motion);
-    replay_header_write(&header, bytes);
+    takt_path_push(&path, &line);
+    takt_path_finish(&path);
+    takt_path_go_on(&path);
+    takt_motion_build(&motion);
+    takt_replay_header_write(&header, bytes);
     length = REPLAY_HEADER_BYTES;
     given = 0;
     crc = CRC32_START;
@@ -96,13 +96,13 @@ static double run_until_it_fails(void)
     struct cycle_record record;
     double farthest = 0;
 
-    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
     for (int i = 0; i < 100; i++) {
-        replay_read(&replay, &limits);
-        if (motion_cycle(&motion, &as_programmed, &record) != MOTION_HANDED_OVER) {
+        takt_replay_read(&replay, &limits);
+        if (takt_motion_cycle(&motion, &as_programmed, &record) != MOTION_HANDED_OVER) {
             continue;
         }
-        if (replay_cycle(&replay, &motion, &as_programmed, &record) == REPLAY_FAILED) {
+        if (takt_replay_cycle(&replay, &motion, &as_programmed, &record) == REPLAY_FAILED) {
             return farthest;
         }
         farthest = record.cmd.at[AXIS_X];

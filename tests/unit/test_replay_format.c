@@ -59,9 +59,9 @@ static struct intake read_all(void)
     const struct replay_source source = {.read = read_slowly};
     static struct intake intake;
 
-    intake_open(&intake, &source);
+    takt_intake_open(&intake, &source);
     for (unsigned i = 0; i < sizeof(bytes); i++) {
-        intake_read(&intake);
+        takt_intake_read(&intake);
     }
     return intake;
 }
@@ -71,8 +71,8 @@ static void test_a_header_reads_as_it_was_written(void)
     const struct replay_header written = header();
     struct replay_header read;
 
-    replay_header_write(&written, bytes);
-    TEST_ASSERT_EQUAL(REPLAY_GOOD, replay_header_read(&read, bytes));
+    takt_replay_header_write(&written, bytes);
+    TEST_ASSERT_EQUAL(REPLAY_GOOD, takt_replay_header_read(&read, bytes));
     TEST_ASSERT_EQUAL_UINT32(written.step_cycles, read.step_cycles);
     TEST_ASSERT_EQUAL_UINT32(written.ceiling_percent, read.ceiling_percent);
     TEST_ASSERT_EQUAL_UINT64(written.intervals, read.intervals);
@@ -87,17 +87,17 @@ static void test_every_changed_byte_of_a_header_is_seen(void)
     struct replay_header read;
 
     for (unsigned i = 0; i < REPLAY_HEADER_BYTES; i++) {
-        replay_header_write(&written, bytes);
+        takt_replay_header_write(&written, bytes);
         bytes[i] ^= 0x10U;
-        TEST_ASSERT_NOT_EQUAL(REPLAY_GOOD, replay_header_read(&read, bytes));
+        TEST_ASSERT_NOT_EQUAL(REPLAY_GOOD, takt_replay_header_read(&read, bytes));
     }
 }
 
 static void put_record(enum replay_kind kind, uint32_t crc)
 {
     bytes[length] = (uint8_t)kind;
-    replay_put(bytes + length + 1, 0, 2);
-    replay_put(bytes + length + 3, crc, 4);
+    takt_replay_put(bytes + length + 1, 0, 2);
+    takt_replay_put(bytes + length + 3, crc, 4);
     length += 7;
 }
 
@@ -106,7 +106,7 @@ static void test_an_unknown_record_and_a_wrong_checksum_are_refused(void)
     struct replay_header written = header();
 
     written.intervals = 0;
-    replay_header_write(&written, bytes);
+    takt_replay_header_write(&written, bytes);
     length = REPLAY_HEADER_BYTES;
     put_record(REPLAY_END, 0x12345678U);
     TEST_ASSERT_EQUAL(REPLAY_DAMAGED, read_all().fault);
@@ -117,7 +117,7 @@ static void test_a_file_that_ends_early_waits_and_never_ends(void)
     const struct replay_header written = header();
     struct intake intake;
 
-    replay_header_write(&written, bytes);
+    takt_replay_header_write(&written, bytes);
     length = REPLAY_HEADER_BYTES;
     intake = read_all();
     TEST_ASSERT_TRUE(intake.has_header);

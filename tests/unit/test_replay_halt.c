@@ -25,12 +25,12 @@ void tearDown(void)
 {
 }
 
-/* What the last cycles have led, judged by differences as setpoints are at a place where the axes move evenly. */
+/* What the last cycles have led, verified by differences as setpoints are at a place where the axes move evenly. */
 struct differences {
     double way[4];
 };
 
-static double judged(struct differences *d, const struct plan_limits *l, double here)
+static double verified(struct differences *d, const struct plan_limits *l, double here)
 {
     double most = 0.0;
 
@@ -72,10 +72,10 @@ static int drive_so(struct rate *r, const struct plan_limits *limits, double to,
     for (int n = 1; n < CYCLES; n++) {
         const struct rate before = *r;
         to = restless ? next_order(to) : to;
-        const double here = halt_step(&h, r, to, way);
+        const double here = takt_halt_step(&h, r, to, way);
 
         TEST_ASSERT_TRUE(here >= 0.0 && here <= way);
-        TEST_ASSERT_TRUE(judged(d, limits, here) <= 1.0);
+        TEST_ASSERT_TRUE(verified(d, limits, here) <= 1.0);
         way -= here;
         if (way == 0.0 && rate_rests(r)) {
             return n;
@@ -98,10 +98,10 @@ static void test_it_comes_to_rest_exactly_at_any_place_within_the_limits(void)
         struct differences d = {{0}};
         struct rate r;
 
-        rate_init(&r, &limits, RANDOM_RATE_KEPT);
-        rate_set(&r, 0.0);
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        takt_rate_set(&r, 0.0);
         for (int k = 0; k < WAYS; k++) {
-            const double way = maths_power(10.0, random_rate_between(-6.0, 4.0));
+            const double way = takt_maths_power(10.0, random_rate_between(-6.0, 4.0));
             const double to = random_rate_between(0.05, HALT_RATE);
 
             TEST_ASSERT_TRUE(drive(&r, &limits, to, way, &d) > 0);
@@ -116,10 +116,10 @@ static void test_orders_on_the_way_change_nothing_of_where_it_comes_to_rest(void
         struct differences d = {{0}};
         struct rate r;
 
-        rate_init(&r, &limits, RANDOM_RATE_KEPT);
-        rate_set(&r, 0.0);
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        takt_rate_set(&r, 0.0);
         for (int k = 0; k < WAYS; k++) {
-            const double way = maths_power(10.0, random_rate_between(-4.0, 3.0));
+            const double way = takt_maths_power(10.0, random_rate_between(-4.0, 3.0));
 
             TEST_ASSERT_TRUE(drive_so(&r, &limits, HALT_RATE, way, &d, true) > 0);
         }
@@ -133,21 +133,21 @@ static void test_a_short_way_takes_little_more_than_the_least_time(void)
         const struct plan_limits limits = random_rate_machine();
         struct rate r;
 
-        rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
         const double m =
             r.limits.room * (1.0 - RANDOM_RATE_KEPT * HALT_RATE * HALT_RATE * HALT_RATE);
         const double c = r.limits.change * (1.0 - RANDOM_RATE_KEPT * HALT_RATE * HALT_RATE);
         const double longest = 2.0 * c * c * c / (m * m); /* the change comes to its bound */
 
         for (int k = 0; k < WAYS; k++) {
-            const double way = longest * maths_power(10.0, random_rate_between(-6.0, 0.0));
+            const double way = longest * takt_maths_power(10.0, random_rate_between(-6.0, 0.0));
             struct differences d = {{0}};
 
-            rate_set(&r, 0.0);
+            takt_rate_set(&r, 0.0);
             const int cycles = drive(&r, &limits, HALT_RATE, way, &d);
 
             TEST_ASSERT_TRUE(cycles > 0);
-            TEST_ASSERT_TRUE(cycles <= SLOWER * maths_cbrt(32.0 * way / m) + MORE);
+            TEST_ASSERT_TRUE(cycles <= SLOWER * takt_maths_cbrt(32.0 * way / m) + MORE);
         }
     }
 }
@@ -159,16 +159,16 @@ static void test_from_any_state_the_way_it_says_is_enough(void)
         const struct plan_limits limits = random_rate_machine();
         struct rate r;
 
-        rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
         for (int k = 0; k < WAYS; k++) {
             struct differences d = {{0}};
             const double to = random_rate_between(0.0, HALT_RATE);
-            const int cycles = (int)maths_power(10.0, random_rate_between(0.0, 3.3));
+            const int cycles = (int)takt_maths_power(10.0, random_rate_between(0.0, 3.3));
 
-            for (int i = 0; i < cycles || !halt_is_possible(&r); i++) {
-                judged(&d, &limits, rate_step(&r, to));
+            for (int i = 0; i < cycles || !takt_halt_is_possible(&r); i++) {
+                verified(&d, &limits, takt_rate_step(&r, to));
             }
-            TEST_ASSERT_TRUE(drive(&r, &limits, to, halt_way(&r) * (1.0 + ROUNDING), &d) > 0);
+            TEST_ASSERT_TRUE(drive(&r, &limits, to, takt_halt_way(&r) * (1.0 + ROUNDING), &d) > 0);
         }
     }
 }

@@ -23,13 +23,13 @@ void tearDown(void)
 {
 }
 
-/* One cycle, judged with the largest of what the rate was and is. */
-static double judged_step(struct rate *r, const struct plan_limits *l, double to)
+/* One cycle, verified with the largest of what the rate was and is. */
+static double verified_step(struct rate *r, const struct plan_limits *l, double to)
 {
     const struct rate before = *r;
     double most = 0.0;
 
-    (void)rate_step(r, to);
+    (void)takt_rate_step(r, to);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         most = maths_max(most, random_rate_need(l, i, &before, r));
     }
@@ -42,14 +42,14 @@ static void test_no_change_of_the_rate_needs_more_than_the_limits(void)
         const struct plan_limits limits = random_rate_machine();
         struct rate r;
 
-        rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
         for (int order = 0; order < ORDERS; order++) {
             const double to =
                 random_rate_between(0, 1) < 0.3 ? 0.0 : maths_min(1.0, random_rate_between(0, 1.3));
-            const int cycles = (int)maths_power(10.0, random_rate_between(0, 3.3));
+            const int cycles = (int)takt_maths_power(10.0, random_rate_between(0, 3.3));
 
             for (int i = 0; i < cycles; i++) {
-                TEST_ASSERT_TRUE(judged_step(&r, &limits, to) <= 1.0 + ROUNDING);
+                TEST_ASSERT_TRUE(verified_step(&r, &limits, to) <= 1.0 + ROUNDING);
                 TEST_ASSERT_TRUE(r.now >= 0.0 && r.now <= 1.0);
             }
         }
@@ -62,13 +62,13 @@ static void test_every_rate_is_come_to_and_kept(void)
     const struct plan_limits limits = random_rate_machine();
     struct rate r;
 
-    rate_init(&r, &limits, RANDOM_RATE_KEPT);
+    takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
     for (unsigned i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++) {
         for (int k = 0; k < SETTLED; k++) {
-            (void)rate_step(&r, wanted[i]);
+            (void)takt_rate_step(&r, wanted[i]);
         }
         TEST_ASSERT_EQUAL_DOUBLE(wanted[i], r.now);
-        TEST_ASSERT_EQUAL_DOUBLE(wanted[i], rate_step(&r, wanted[i]));
+        TEST_ASSERT_EQUAL_DOUBLE(wanted[i], takt_rate_step(&r, wanted[i]));
     }
 }
 
@@ -79,12 +79,12 @@ static void test_coming_to_rest_leads_no_farther_than_said(void)
         struct rate r;
         double way = 0.0;
 
-        rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
         for (int i = 0; i < SETTLED && !rate_rests(&r); i++) {
-            way += rate_step(&r, 0.0);
+            way += takt_rate_step(&r, 0.0);
         }
         TEST_ASSERT_TRUE(rate_rests(&r));
-        TEST_ASSERT_TRUE(way <= rate_brake_cycles(&r));
+        TEST_ASSERT_TRUE(way <= takt_rate_brake_cycles(&r));
     }
 }
 

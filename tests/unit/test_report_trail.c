@@ -121,8 +121,8 @@ static void test_a_change_of_feed_or_line_is_kept(void)
 static struct trail_point flower(uint32_t k)
 {
     const double angle = 0.003 * k;
-    const double radius = 40.0 + 25.0 * maths_sin(7.1 * angle);
-    return point_at(k, radius * maths_cos(angle), radius * maths_sin(angle), 0.0001 * k);
+    const double radius = 40.0 + 25.0 * takt_maths_sin(7.1 * angle);
+    return point_at(k, radius * takt_maths_cos(angle), radius * takt_maths_sin(angle), 0.0001 * k);
 }
 
 static void test_no_point_is_farther_from_the_trail_than_stated(void)

@@ -73,13 +73,13 @@ static void open_disk(struct state_disk *at, struct store *store)
     for (unsigned i = 0; i < FLASH_SECTORS; i++)
         memcpy(state_disk_mirror(at, i), disk.kept[i], SECTOR_BYTES);
     port = state_disk_get_port(at);
-    store_open(store, &port);
+    takt_store_open(store, &port);
 }
 
 /* Change number k of a session: an offset, a tool, its wear, the line. */
 static void change(unsigned k)
 {
-    TEST_ASSERT_TRUE(parameters_set(&state.parameters, 5221 + k % 6, 0.1 * k - 7));
+    TEST_ASSERT_TRUE(takt_parameters_set(&state.parameters, 5221 + k % 6, 0.1 * k - 7));
     state.tools[k % TOOLS].offset.at[AXIS_Z] = 1.0 / 3 * k;
     state.wear[0] = (struct state_wear){3, 1.5 * k, 0.001 * k};
     state.line = k;
@@ -114,7 +114,7 @@ static unsigned look_at_disk(void)
     unsigned line = 0;
 
     open_disk(&at, &store);
-    if (store_get(&store, &bytes, &size)) {
+    if (takt_store_get(&store, &bytes, &size)) {
         TEST_ASSERT_TRUE_MESSAGE(state_read(&read, (const char *)bytes, size, problem), problem);
         line = read.line;
     }
@@ -124,7 +124,7 @@ static unsigned look_at_disk(void)
 
 static void expect_whole(unsigned k)
 {
-    TEST_ASSERT_TRUE(parameters_get(&read.parameters, 5221 + k % 6) == 0.1 * k - 7);
+    TEST_ASSERT_TRUE(takt_parameters_get(&read.parameters, 5221 + k % 6) == 0.1 * k - 7);
     TEST_ASSERT_TRUE(read.tools[k % TOOLS].offset.at[AXIS_Z] == 1.0 / 3 * k);
     TEST_ASSERT_TRUE(read.wear[0].length_mm == 1.5 * k && read.wear[0].time_s == 0.001 * k);
 }
@@ -267,7 +267,7 @@ static void begin_session(struct session *s)
     for (unsigned i = 0; i < FLASH_SECTORS; i++)
         memset(state_disk_mirror(&s->keeper.disk, i), 0xFF, SECTOR_BYTES);
     port = state_disk_get_port(&s->keeper.disk);
-    store_open(&s->keeper.store, &port);
+    takt_store_open(&s->keeper.store, &port);
     s->keeper.offered.tools = offered_tools;
     s->keeper.is_running = true;
 }
@@ -337,7 +337,7 @@ static void test_a_state_of_a_later_version_is_refused_and_lines_it_adds_are_ski
     TEST_ASSERT_FALSE(reads("takt-state 2\n", problem));
     TEST_ASSERT_NOT_NULL(strstr(problem, "later version"));
     TEST_ASSERT_TRUE(reads("takt-state 1\nfuture 1 2 3\nparameter 31 5\n", problem));
-    TEST_ASSERT_TRUE(parameters_get(&read.parameters, 31) == 5);
+    TEST_ASSERT_TRUE(takt_parameters_get(&read.parameters, 31) == 5);
 }
 
 static void test_a_line_that_makes_no_sense_is_told(void)

@@ -1,7 +1,7 @@
 /*
  * The ordered end of a service: on the path or at once, and what the drives are left in.
  */
-#include "service_judge.h"
+#include "service_verifier.h"
 
 #include "drives/virtual_drives.h"
 #include "simulation/ending.h"
@@ -28,8 +28,8 @@ static void run_into_motion(void)
 {
     load(WINDING);
     must(REGISTER_CYCLE_START, 1);
-    judged_cycles(1000);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    verified_cycles(1000);
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
 }
 
 static unsigned end(enum ending_way way)
@@ -38,7 +38,7 @@ static unsigned end(enum ending_way way)
 
     ending_ask(&ending, &service.controller, way);
     while (!ending_is_over(&ending, &service.controller) && cycles < END_CYCLES_MAX) {
-        judged_cycle();
+        verified_cycle();
         cycles++;
     }
     TEST_ASSERT_TRUE(cycles < END_CYCLES_MAX);
@@ -73,11 +73,11 @@ static void test_an_end_in_motion_rests_on_the_path_within_the_limits(void)
 static void test_spindle_and_coolant_are_off_at_the_end(void)
 {
     run_into_motion();
-    TEST_ASSERT_TRUE(service_get_outputs(&service).spindle_speed_rpm == 1000);
-    TEST_ASSERT_TRUE(service_get_outputs(&service).flood);
+    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 1000);
+    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).flood);
     (void)end(ENDING_ON_PATH);
-    TEST_ASSERT_TRUE(service_get_outputs(&service).spindle_speed_rpm == 0);
-    TEST_ASSERT_FALSE(service_get_outputs(&service).flood);
+    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 0);
+    TEST_ASSERT_FALSE(takt_service_get_outputs(&service).flood);
 }
 
 /* A spindle that stops under a moving tool breaks it. */
@@ -86,9 +86,9 @@ static void test_the_spindle_turns_as_long_as_the_axes_are_on_the_path(void)
     run_into_motion();
     ending_ask(&ending, &service.controller, ENDING_ON_PATH);
     while (drives_get_state(&service.controller.drives) <= DRIVES_STOPPING) {
-        TEST_ASSERT_TRUE(service_get_outputs(&service).spindle_speed_rpm == 1000);
+        TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 1000);
         (void)ending_is_over(&ending, &service.controller);
-        judged_cycle();
+        verified_cycle();
     }
 }
 
@@ -96,7 +96,7 @@ static void test_asked_twice_the_drives_brake_at_once(void)
 {
     run_into_motion();
     ending_ask(&ending, &service.controller, ENDING_ON_PATH);
-    judged_cycles(5);
+    verified_cycles(5);
     TEST_ASSERT_EQUAL_INT(DRIVES_STOPPING, drives_get_state(&service.controller.drives));
     const double from_mm = virtual_drive_get_position_mm(&drives.drive[0]);
     (void)end(ENDING_AT_ONCE);
@@ -134,7 +134,7 @@ static void test_an_end_after_an_alarm_of_the_program_switches_the_drives_off(vo
 {
     load("G21 F600\nG1 X1\nG1 Q5\nM2\n");
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_ALARM);
+    verified_wait_for(PANEL_ALARM);
     expect_drives(CIA402_ENABLED);
     (void)end(ENDING_ON_PATH);
     expect_drives(CIA402_SWITCH_ON_DISABLED);
@@ -143,24 +143,25 @@ static void test_an_end_after_an_alarm_of_the_program_switches_the_drives_off(vo
 static void test_a_program_that_is_cut_short_tells_its_line(void)
 {
     run_into_motion();
-    TEST_ASSERT_EQUAL_UINT32(shown(REGISTER_ACTIVE_LINE), service_get_cut_line(&service));
+    TEST_ASSERT_EQUAL_UINT32(shown(REGISTER_ACTIVE_LINE), takt_service_get_cut_line(&service));
     (void)end(ENDING_ON_PATH);
-    TEST_ASSERT_TRUE(service_get_cut_line(&service) == 4 || service_get_cut_line(&service) == 5);
+    TEST_ASSERT_TRUE(takt_service_get_cut_line(&service) == 4 ||
+                     takt_service_get_cut_line(&service) == 5);
 }
 
 static void test_a_program_that_comes_to_its_end_has_no_such_line(void)
 {
     load("G21 F600\nG1 X1\nM2\n");
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_IDLE);
-    TEST_ASSERT_EQUAL_UINT32(0, service_get_cut_line(&service));
+    verified_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_UINT32(0, takt_service_get_cut_line(&service));
 }
 
 static void test_a_lost_bus_is_an_alarm_and_a_reset_enables_the_drives_again(void)
 {
     run_into_motion();
-    service_lose_bus(&service, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_ALARM, service_get_state(&service));
+    takt_service_lose_bus(&service, 1);
+    TEST_ASSERT_EQUAL_INT(PANEL_ALARM, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_LOST, service.alarm_text.code);
     TEST_ASSERT_EQUAL_STRING("the bus can1 is gone", alarm_text());
     for (unsigned i = 0; i < END_CYCLES_MAX && order(REGISTER_RESET, 1) != PANEL_DONE; i++)

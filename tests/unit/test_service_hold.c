@@ -1,7 +1,7 @@
 /*
  * firmware/service/service.h: coming to rest on the path and going on, for every cause; giving up; jogs that are let go.
  */
-#include "service_judge.h"
+#include "service_verifier.h"
 
 void setUp(void)
 {
@@ -18,8 +18,8 @@ static void cut(void)
 {
     load("G21 F3000\nG1 X200\nM2\n");
     must(REGISTER_CYCLE_START, 1);
-    judged_cycles(500);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    verified_cycles(500);
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     TEST_ASSERT_GREATER_THAN(10, service.at.at[AXIS_X]);
 }
 
@@ -28,10 +28,10 @@ static double expect_rest(void)
 {
     const double before = service.at.at[AXIS_X];
 
-    judged_cycles(500);
+    verified_cycles(500);
     const double at = service.at.at[AXIS_X];
 
-    judged_cycles(200);
+    verified_cycles(200);
     TEST_ASSERT_EQUAL_DOUBLE(at, service.at.at[AXIS_X]);
     TEST_ASSERT_TRUE(at > before && at < 199);
     return at;
@@ -41,12 +41,12 @@ static void test_a_hold_rests_on_the_path_and_resume_goes_on_to_its_end(void)
 {
     cut();
     must(REGISTER_FEED_HOLD, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     (void)expect_rest();
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_OPERATOR, shown(REGISTER_HOLD_REASON));
     TEST_ASSERT_EQUAL_INT64(PANEL_OVERRIDE_HELD, shown(REGISTER_OVERRIDE_REASON));
     must(REGISTER_RESUME, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
     expect_limits_kept();
@@ -56,12 +56,12 @@ static void test_a_program_given_up_rests_within_the_limits_and_another_begins_t
 {
     cut();
     must(REGISTER_RESET, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, service_get_state(&service));
-    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, takt_service_get_state(&service));
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 199);
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
     expect_limits_kept();
 }
@@ -72,7 +72,7 @@ static void test_a_program_held_can_be_given_up(void)
     must(REGISTER_FEED_HOLD, 1);
     (void)expect_rest();
     must(REGISTER_RESET, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
 }
 
@@ -81,12 +81,12 @@ static void test_a_feed_override_of_0_rests_and_of_more_goes_on(void)
     cut();
     must(REGISTER_FEED_OVERRIDE, 0);
     (void)expect_rest();
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     must(REGISTER_FEED_OVERRIDE, 500);
-    judged_cycles(500);
+    verified_cycles(500);
     TEST_ASSERT_INT64_WITHIN(1, 15000, shown(REGISTER_FEED));
     must(REGISTER_FEED_OVERRIDE, 1200);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     expect_limits_kept();
 }
 
@@ -95,7 +95,7 @@ static void test_a_spindle_lost_in_a_cut_rests_the_axes_until_acknowledged(void)
 {
     load("G21 F3000\nM3 S6000\nG1 X200\nM2\n");
     must(REGISTER_CYCLE_START, 1);
-    judged_cycles(500);
+    verified_cycles(500);
     TEST_ASSERT_EQUAL_INT64(60000, shown(REGISTER_SPINDLE_COMMANDED));
     world.spindle.silent = true;
     world.spindle.at_speed = false;
@@ -103,13 +103,13 @@ static void test_a_spindle_lost_in_a_cut_rests_the_axes_until_acknowledged(void)
     TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_SPINDLE, shown(REGISTER_ALARM));
     world.spindle.silent = false;
     world.spindle.at_speed = true;
-    judged_cycles(100);
+    verified_cycles(100);
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_RESUME, 1));
     must(REGISTER_ACKNOWLEDGE, 1);
-    judged_cycles(100);
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    verified_cycles(100);
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     must(REGISTER_RESUME, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_SPINDLE_COMMANDED));
     expect_limits_kept();
@@ -120,7 +120,7 @@ static void test_a_silent_panel_in_control_rests_the_axes(void)
     cut();
     must(REGISTER_WATCHDOG, 200);
     (void)expect_rest();
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_PANEL, shown(REGISTER_HOLD_REASON));
     expect_limits_kept();
 }
@@ -131,10 +131,10 @@ static void test_a_jog_ends_when_it_is_let_go(void)
     must(REGISTER_WATCHDOG, 60000);
     must(REGISTER_JOG_FEED, 3000);
     must(REGISTER_JOG_PLUS, 1);
-    judged_cycles(500);
+    verified_cycles(500);
     must(REGISTER_JOG_PLUS, 0);
-    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, service_get_state(&service));
-    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, takt_service_get_state(&service));
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] > 10 && service.at.at[AXIS_X] < 60);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
     expect_limits_kept();
@@ -142,8 +142,8 @@ static void test_a_jog_ends_when_it_is_let_go(void)
 
 static void expect_held_at(double place_mm, enum panel_hold reason)
 {
-    judged_wait_for(PANEL_HELD);
-    judged_cycles(300);
+    verified_wait_for(PANEL_HELD);
+    verified_cycles(300);
     TEST_ASSERT_EQUAL_INT64(reason, shown(REGISTER_HOLD_REASON));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, place_mm, service.at.at[AXIS_X]);
 }
@@ -158,7 +158,7 @@ static void test_single_block_holds_at_the_end_of_each_motion(void)
         TEST_ASSERT_EQUAL_DOUBLE(10.0 * i, service.at.at[AXIS_X]);
         must(REGISTER_CYCLE_START, 1);
     }
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
 }
 
@@ -168,10 +168,10 @@ static void test_m0_holds_and_m1_only_if_the_operator_wants_it(void)
     must(REGISTER_CYCLE_START, 1);
     expect_held_at(10, PANEL_HOLD_PROGRAM);
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(30000, shown(REGISTER_POSITION_X));
     start_line("G0 X0");
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     must(REGISTER_MODE, PANEL_MODE_PROGRAM);
     must(REGISTER_OPTIONAL_STOP, 1);
     must(REGISTER_CYCLE_START, 1);
@@ -179,23 +179,23 @@ static void test_m0_holds_and_m1_only_if_the_operator_wants_it(void)
     must(REGISTER_RESUME, 1);
     expect_held_at(20, PANEL_HOLD_PROGRAM);
     must(REGISTER_RESUME, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
 }
 
 static void test_a_line_leaves_the_spindle_turning_and_a_program_does_not(void)
 {
     start_line("M3 S1000");
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     start_line("G0 X1");
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(10000, shown(REGISTER_SPINDLE_COMMANDED));
     start_line("M5");
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_SPINDLE_COMMANDED));
     load("M3 S1000\nM8\nG0 X0\nM2\n");
     must(REGISTER_MODE, PANEL_MODE_PROGRAM);
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_SPINDLE_COMMANDED));
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_COOLANT));
 }

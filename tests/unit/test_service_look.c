@@ -100,7 +100,7 @@ static void test_axes_that_look_for_their_homes_do_not_know_them(void)
                                           .can = can_single(bus_attach(&bus, NULL)),
                                           .reader = &service_reader,
                                           .parameters = &parameters};
-    service_init(&service, &config);
+    takt_service_init(&service, &config);
     cycle();
     TEST_ASSERT_EQUAL_INT64(5, shown(REGISTER_HOMED));
 }
@@ -113,7 +113,7 @@ static void test_wear_of_a_tool_is_set_shown_and_reset(void)
     must(REGISTER_TOOL_WEAR_LENGTH, 123456);
     must(REGISTER_TOOL_WEAR_TIME, 78);
     TEST_ASSERT_EQUAL_INT64(123456, shown(REGISTER_TOOL_WEAR_LENGTH));
-    correction_get_wear(&service.controller.correction, 3, &length_mm, &time_s);
+    takt_correction_get_wear(&service.controller.correction, 3, &length_mm, &time_s);
     TEST_ASSERT_TRUE(length_mm == 123456 && time_s == 78);
     must(REGISTER_TOOL_WEAR_LENGTH, 0);
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_TOOL_WEAR_LENGTH));
@@ -139,7 +139,8 @@ static void test_a_program_sets_wear_where_it_stands(void)
     load("G21 G90 G61 F600\nG1 X5\nG10 L12 P3 I7\nG1 X10\nM2\n");
     must(REGISTER_TOOL_SELECT, 3);
     must(REGISTER_CYCLE_START, 1);
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != PANEL_IDLE; i++) {
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && takt_service_get_state(&service) != PANEL_IDLE;
+         i++) {
         cycle();
         TEST_ASSERT_EQUAL_INT64(
             shown(REGISTER_POSITION_X) > 5000 ? 7 : 0,
@@ -187,7 +188,8 @@ static void test_the_next_program_starts_at_the_line_that_is_set_and_only_that_o
     must(REGISTER_CYCLE_START, 1);
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_START_LINE));
     bool passed_line_3 = false;
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != PANEL_IDLE; i++) {
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && takt_service_get_state(&service) != PANEL_IDLE;
+         i++) {
         cycle();
         passed_line_3 = passed_line_3 || shown(REGISTER_ACTIVE_LINE) == 3;
     }

@@ -18,7 +18,7 @@ static void test_a_program_is_taken_started_and_run_to_its_end(void)
     load("G21 G90 F6000\nG1 X10 Y-5\nM2\n");
     TEST_ASSERT_EQUAL_INT64(28, shown(REGISTER_PROGRAM_SIZE));
     must(REGISTER_CYCLE_START, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(1, shown(REGISTER_CYCLE_START));
     wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
@@ -75,14 +75,14 @@ static void test_an_error_ends_the_program_after_what_stands_before_it(void)
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_CYCLE_START, 1));
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_ACKNOWLEDGE, 1));
     must(REGISTER_RESET, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_NONE, shown(REGISTER_ALARM));
 }
 
 static void test_a_line_runs_and_keeps_its_parameters(void)
 {
     start_line("G10 L2 P1 X5");
-    TEST_ASSERT_EQUAL_INT(PANEL_MDI, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_MDI, takt_service_get_state(&service));
     wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(5000, shown(REGISTER_WORK_OFFSET_X));
     start_line("G0 X2");
@@ -186,7 +186,7 @@ static void test_a_jog_without_end_is_for_a_panel_in_control(void)
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_JOG_PLUS, 1));
     must(REGISTER_WATCHDOG, 60000);
     must(REGISTER_JOG_PLUS, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_JOGGING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_JOGGING, takt_service_get_state(&service));
 }
 
 static void test_homing_takes_all_axes_to_zero(void)
@@ -195,7 +195,7 @@ static void test_homing_takes_all_axes_to_zero(void)
     wait_for(PANEL_IDLE);
     must(REGISTER_MODE, PANEL_MODE_JOG);
     must(REGISTER_HOME, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_HOMING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HOMING, takt_service_get_state(&service));
     wait_for(PANEL_IDLE);
     for (unsigned i = 0; i < 3; i++)
         TEST_ASSERT_EQUAL_INT64(0, shown((enum panel_id)(REGISTER_POSITION_X + i)));
@@ -210,7 +210,7 @@ static void test_an_emergency_stop_ends_in_idle_where_the_drives_stand(void)
     for (int i = 0; i < 500; i++)
         cycle();
     must(REGISTER_EMERGENCY_STOP, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_EMERGENCY, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_EMERGENCY, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_EMERGENCY, shown(REGISTER_ALARM));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_EMERGENCY_STOP, service.alarm_text.code);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
@@ -220,7 +220,7 @@ static void test_an_emergency_stop_ends_in_idle_where_the_drives_stand(void)
     TEST_ASSERT_TRUE(at > 10000 && at < 100000);
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_RESET, 1));
     must(REGISTER_EMERGENCY_STOP, 0);
-    TEST_ASSERT_EQUAL_INT(PANEL_ALARM, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_ALARM, takt_service_get_state(&service));
     must(REGISTER_RESET, 1);
     wait_for(PANEL_IDLE);
     TEST_ASSERT_INT64_WITHIN(50, at, shown(REGISTER_ACTUAL_X));
@@ -240,7 +240,7 @@ static void test_a_refused_order_has_changed_nothing(void)
                  {REGISTER_TOOL_DIAMETER, 1}},
     };
 
-    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_VALUE, service_order(&service, &both));
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_VALUE, takt_service_order(&service, &both));
     TEST_ASSERT_EQUAL_INT64(1000, shown(REGISTER_FEED_OVERRIDE));
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_TOOL_SELECT));
 }
@@ -254,7 +254,7 @@ static void test_a_tool_selected_and_set_in_one_order_is_that_tool(void)
                  {REGISTER_TOOL_DIAMETER, 6000}},
     };
 
-    TEST_ASSERT_EQUAL_INT(PANEL_DONE, service_order(&service, &both));
+    TEST_ASSERT_EQUAL_INT(PANEL_DONE, takt_service_order(&service, &both));
     TEST_ASSERT_EQUAL_DOUBLE(20.5, tools[0].offset.at[AXIS_Z]);
     TEST_ASSERT_EQUAL_DOUBLE(6.0, tools[0].diameter_mm);
     TEST_ASSERT_EQUAL_INT64(20500, shown(REGISTER_TOOL_OFFSET_Z));
@@ -267,7 +267,7 @@ static void test_two_buttons_at_once_are_refused(void)
     const struct panel_order both = {.count = 2,
                                      .item = {{REGISTER_CYCLE_START, 1}, {REGISTER_RESET, 1}}};
 
-    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_VALUE, service_order(&service, &both));
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_VALUE, takt_service_order(&service, &both));
 }
 
 static void test_a_silent_panel_in_control_raises_an_alarm_and_loses_it(void)
@@ -275,7 +275,7 @@ static void test_a_silent_panel_in_control_raises_an_alarm_and_loses_it(void)
     must(REGISTER_WATCHDOG, 100);
     for (int i = 0; i < 90; i++)
         cycle();
-    service_alive(&service);
+    takt_service_alive(&service);
     for (int i = 0; i < 90; i++)
         cycle();
     TEST_ASSERT_EQUAL_INT64(100, shown(REGISTER_WATCHDOG));
@@ -303,7 +303,7 @@ static void test_a_fault_of_a_drive_is_an_alarm_that_reset_leads_out_of(void)
 {
     start_line("G0 X2");
     wait_for(PANEL_IDLE);
-    drives_stop_at_once(&service.controller.drives, TAKT_ERROR_DRIVE_FAULT);
+    takt_drives_stop_at_once(&service.controller.drives, TAKT_ERROR_DRIVE_FAULT);
     wait_for(PANEL_ALARM);
     TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_DRIVE, shown(REGISTER_ALARM));
     must(REGISTER_RESET, 1);
@@ -320,7 +320,7 @@ static void cut(void)
     service.controller.outputs.spindle_speed_rpm = 6000;
     for (int i = 0; i < 100; i++)
         cycle();
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
 }
 
 static void test_a_spindle_lost_in_a_cut_holds_with_an_alarm_until_acknowledged(void)
@@ -329,7 +329,7 @@ static void test_a_spindle_lost_in_a_cut_holds_with_an_alarm_until_acknowledged(
     world.spindle.silent = true;
     world.spindle.at_speed = false;
     cycle();
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_SPINDLE, shown(REGISTER_HOLD_REASON));
     TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_SPINDLE, shown(REGISTER_ALARM));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SPINDLE_SILENT, service.alarm_text.code);
@@ -340,7 +340,7 @@ static void test_a_spindle_lost_in_a_cut_holds_with_an_alarm_until_acknowledged(
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_CYCLE_START, 1));
     must(REGISTER_ACKNOWLEDGE, 1);
     must(REGISTER_RESUME, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
 }
 
 static void test_an_acknowledged_trip_resets_the_drive_and_waits_for_its_speed(void)
@@ -350,10 +350,10 @@ static void test_an_acknowledged_trip_resets_the_drive_and_waits_for_its_speed(v
     world.spindle.at_speed = false;
     cycle();
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SPINDLE_TRIPPED, service.alarm_text.code);
-    TEST_ASSERT_FALSE(service_take_spindle_reset(&service));
+    TEST_ASSERT_FALSE(takt_service_take_spindle_reset(&service));
     must(REGISTER_ACKNOWLEDGE, 1);
-    TEST_ASSERT_TRUE(service_take_spindle_reset(&service));
-    TEST_ASSERT_FALSE(service_take_spindle_reset(&service));
+    TEST_ASSERT_TRUE(takt_service_take_spindle_reset(&service));
+    TEST_ASSERT_FALSE(takt_service_take_spindle_reset(&service));
     world.spindle.tripped = false;
     cycle();
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_RESUME, 1));
@@ -366,7 +366,7 @@ static void test_the_spindle_override_scales_the_commanded_speed(void)
 {
     service.controller.outputs.spindle_speed_rpm = -6000;
     must(REGISTER_SPINDLE_OVERRIDE, 800);
-    TEST_ASSERT_EQUAL_DOUBLE(-4800, service_get_outputs(&service).spindle_speed_rpm);
+    TEST_ASSERT_EQUAL_DOUBLE(-4800, takt_service_get_outputs(&service).spindle_speed_rpm);
     TEST_ASSERT_EQUAL_INT64(-48000, shown(REGISTER_SPINDLE_COMMANDED));
 }
 
@@ -377,7 +377,7 @@ static void test_homing_that_is_stopped_is_an_alarm(void)
     must(REGISTER_MODE, PANEL_MODE_JOG);
     must(REGISTER_HOME, 1);
     cycle();
-    TEST_ASSERT_EQUAL_INT(PANEL_HOMING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HOMING, takt_service_get_state(&service));
     must(REGISTER_FEED_HOLD, 1);
     wait_for(PANEL_ALARM);
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_HOMING_STOPPED, service.alarm_text.code);

@@ -2,7 +2,7 @@
  * firmware/service/service.h: single block, switched on and off while a program runs. It holds at the next block end at
  * which the axes can come to rest within their limits, exactly there, and nowhere else.
  */
-#include "service_judge.h"
+#include "service_verifier.h"
 
 #include <stdio.h>
 
@@ -28,7 +28,7 @@ static unsigned draw(unsigned below)
     return (unsigned)(chance >> 33) % below;
 }
 
-/* 300 mm along X at 50 mm/s in blocks of so many tenths of a mm, on their way for half a second. */
+/* 300 mm along X at 50 mm/s in blocks of this many tenths of a mm, on their way for half a second. */
 static void cut(unsigned tenths)
 {
     static char text[60000];
@@ -38,19 +38,19 @@ static void cut(unsigned tenths)
         length += sprintf(text + length, "G1 X%u.%u\n", k / 10, k % 10);
     load(text);
     must(REGISTER_CYCLE_START, 1);
-    judged_cycles(500);
+    verified_cycles(500);
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] > 10);
 }
 
 /* Held at an end of these blocks, at rest; returns which. */
 static double expect_held(unsigned tenths)
 {
-    judged_wait_for(PANEL_HELD);
+    verified_wait_for(PANEL_HELD);
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_SINGLE_BLOCK, shown(REGISTER_HOLD_REASON));
     const double held = service.at.at[AXIS_X];
-    const double blocks = maths_round(held * 10.0 / tenths);
+    const double blocks = takt_maths_round(held * 10.0 / tenths);
 
-    judged_cycles(100);
+    verified_cycles(100);
     TEST_ASSERT_EQUAL_DOUBLE(held, service.at.at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, 0.1 * tenths * blocks, held);
     return blocks;
@@ -94,11 +94,11 @@ static void test_switched_off_it_holds_no_more(void)
 
     must(REGISTER_SINGLE_BLOCK, 0);
     must(REGISTER_CYCLE_START, 1);
-    judged_cycles(400);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    verified_cycles(400);
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] > 5.0 * blocks + 10.0);
     TEST_ASSERT_TRUE(most_velocity > 49);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(300000, shown(REGISTER_POSITION_X));
     expect_limits_kept();
 }
@@ -107,11 +107,11 @@ static void test_a_switch_that_was_on_for_a_moment_changes_nothing(void)
 {
     cut(50);
     must(REGISTER_SINGLE_BLOCK, 1);
-    judged_cycle();
+    verified_cycle();
     must(REGISTER_SINGLE_BLOCK, 0);
-    judged_cycles(1000);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
-    judged_wait_for(PANEL_IDLE);
+    verified_cycles(1000);
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(300000, shown(REGISTER_POSITION_X));
 }
 
@@ -128,8 +128,8 @@ static void write_random_program(char *text)
 
         x = maths_clamp(x + reach * (0.001 * draw(2001) - 1.0), 0.0, 90.0);
         y = maths_clamp(y + reach * (0.001 * draw(2001) - 1.0), 0.0, 90.0);
-        x = 0.001 * maths_round(1000 * x);
-        y = 0.001 * maths_round(1000 * y);
+        x = 0.001 * takt_maths_round(1000 * x);
+        y = 0.001 * takt_maths_round(1000 * y);
         corner[k][0] = x;
         corner[k][1] = y;
         length += sprintf(text + length, "G1 X%.3f Y%.3f\n", x, y);
@@ -149,11 +149,11 @@ static bool is_at_corner(void)
 /* What an operator with restless hands does; true while there is something to do. */
 static bool play(bool *on)
 {
-    const enum panel_state state = service_get_state(&service);
+    const enum panel_state state = takt_service_get_state(&service);
 
     if (state == PANEL_HELD) {
         if (shown(REGISTER_HOLD_REASON) == PANEL_HOLD_SINGLE_BLOCK) {
-            judged_cycles(60);
+            verified_cycles(60);
             TEST_ASSERT_TRUE_MESSAGE(is_at_corner(), "a single block is held at its end");
         }
         must(REGISTER_CYCLE_START, 1);
@@ -179,9 +179,9 @@ static void run_random_program(uint64_t seed)
     load(text);
     must(REGISTER_CYCLE_START, 1);
     do
-        judged_cycles(1 + draw(300));
+        verified_cycles(1 + draw(300));
     while (play(&on));
-    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, corner[CORNERS - 1][0], service.at.at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, corner[CORNERS - 1][1], service.at.at[AXIS_Y]);
@@ -190,11 +190,11 @@ static void run_random_program(uint64_t seed)
 
 static void test_whatever_the_operator_switches_limits_hold_and_holds_are_at_block_ends(void)
 {
-    static const enum law laws[] = {LAW_JERK, LAW_SMOOTH};
+    static const enum ramp_profile profiles[] = {RAMP_PROFILE_JERK, RAMP_PROFILE_SMOOTH};
 
     for (unsigned seed = 1; seed <= 12; seed++) {
         bench_set_up_machine();
-        machine.law = laws[seed % 2];
+        machine.profile = profiles[seed % 2];
         machine.landing = seed % 3 == 0 ? LANDING_BLOCK : machine.landing;
         machine.override_proportional = seed % 4 == 0;
         bench_start();
@@ -212,14 +212,14 @@ static void test_switched_on_in_any_cycle_of_short_blocks_it_keeps_the_limits(vo
         load(
             "G21 G61 F6000\nG1 X-0.005 Y0.05 F1919.807\nG1 X-0.004 Y0.049\nG1 X0.035 Y0.017\nM2\n");
         must(REGISTER_CYCLE_START, 1);
-        judged_cycles(cycles);
+        verified_cycles(cycles);
         must(REGISTER_SINGLE_BLOCK, 1);
-        for (unsigned i = 0; i < 3 && service_get_state(&service) != PANEL_IDLE; i++) {
-            judged_cycles(150);
-            if (service_get_state(&service) == PANEL_HELD)
+        for (unsigned i = 0; i < 3 && takt_service_get_state(&service) != PANEL_IDLE; i++) {
+            verified_cycles(150);
+            if (takt_service_get_state(&service) == PANEL_HELD)
                 must(REGISTER_CYCLE_START, 1);
         }
-        judged_wait_for(PANEL_IDLE);
+        verified_wait_for(PANEL_IDLE);
         TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, 0.035, service.at.at[AXIS_X]);
         TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);

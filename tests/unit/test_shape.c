@@ -16,7 +16,7 @@ static uint64_t seed;
 void setUp(void)
 {
     memset(&config, 0, sizeof config);
-    config.train = zv_train;
+    config.train = takt_zv_train;
     config.cycle_s = CYCLE_S;
     seed = 26;
 }
@@ -45,11 +45,11 @@ static double left_of(const struct train *t, const struct shape_mode *mode)
     double re = 0, im = 0;
 
     for (uint32_t i = 0; i < t->count; i++) {
-        const double n = (double)train_length(t) - (double)t->impulse[i].cycles;
-        const double size = t->impulse[i].weight * maths_exp(-mode->damping * w * n);
+        const double n = (double)takt_train_length(t) - (double)t->impulse[i].cycles;
+        const double size = t->impulse[i].weight * takt_maths_exp(-mode->damping * w * n);
 
-        re += size * maths_cos(turn * n);
-        im += size * maths_sin(turn * n);
+        re += size * takt_maths_cos(turn * n);
+        im += size * takt_maths_sin(turn * n);
     }
     return maths_sqrt(re * re + im * im);
 }
@@ -69,11 +69,11 @@ static void test_zv_leaves_nothing_of_a_mode_whatever_its_period_is_of_a_cycle(v
         const struct shape_mode mode = random_mode();
         struct train t;
 
-        zv_train(&mode, CYCLE_S, &t);
+        takt_zv_train(&mode, CYCLE_S, &t);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, left_of(&t, &mode));
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1, sum_of(&t));
-        TEST_ASSERT_TRUE(train_below_zero(&t) == 0);
-        TEST_ASSERT_TRUE(train_length(&t) <= 0.5 * zv_period(&mode, CYCLE_S) + 1);
+        TEST_ASSERT_TRUE(takt_train_below_zero(&t) == 0);
+        TEST_ASSERT_TRUE(takt_train_length(&t) <= 0.5 * takt_zv_period(&mode, CYCLE_S) + 1);
     }
 }
 
@@ -85,10 +85,10 @@ static void test_classic_trains_leave_what_the_textbook_says(void)
         const double angle = MATHS_TWO_PI * mode.hz * CYCLE_S;
         struct train t;
 
-        shapers_mzv(&mode, CYCLE_S, &t);
+        takt_shapers_mzv(&mode, CYCLE_S, &t);
         TEST_ASSERT_DOUBLE_WITHIN(angle * angle / 8, 0, left_of(&t, &mode));
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1, sum_of(&t));
-        shapers_ei(&mode, CYCLE_S, &t);
+        takt_shapers_ei(&mode, CYCLE_S, &t);
         TEST_ASSERT_DOUBLE_WITHIN(angle * angle / 8, 0.05, left_of(&t, &mode));
     }
 }
@@ -101,7 +101,7 @@ static void test_two_modes_of_an_axis_are_both_met(void)
             config.mode[AXIS_X][n].part = 0.5;
         }
         config.keeps_way = i % 2 == 1;
-        TEST_ASSERT_NULL(shape_init(&shape, &config));
+        TEST_ASSERT_NULL(takt_shape_init(&shape, &config));
         for (unsigned n = 0; n < SHAPE_MODES; n++)
             TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0,
                                       left_of(&shape.train[AXIS_X], &config.mode[AXIS_X][n]));
@@ -113,10 +113,10 @@ static void test_all_axes_are_equally_late(void)
     config.mode[AXIS_X][0] = (struct shape_mode){11.3, 0.05, 1};
     config.mode[AXIS_Y][0] = (struct shape_mode){57.9, 0.02, 1};
     config.mode[AXIS_Y][1] = (struct shape_mode){33.1, 0.02, 0.3};
-    shape_init(&shape, &config);
+    takt_shape_init(&shape, &config);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, train_mean(&shape.train[AXIS_X]),
-                                  train_mean(&shape.train[i]));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, takt_train_mean(&shape.train[AXIS_X]),
+                                  takt_train_mean(&shape.train[i]));
 }
 
 /* Part/w^2 of the mode is half the spread. */
@@ -128,9 +128,10 @@ static void test_the_neutral_train_bends_a_way_as_the_mode_bends_it_back(void)
         const double angle = MATHS_TWO_PI * mode.hz * CYCLE_S;
 
         config.mode[AXIS_X][0] = mode;
-        shape_init(&shape, &config);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2 / (angle * angle), train_spread(&shape.train[AXIS_X]));
-        TEST_ASSERT_TRUE(train_below_zero(&shape.train[AXIS_X]) < 0.05);
+        takt_shape_init(&shape, &config);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2 / (angle * angle),
+                                  takt_train_spread(&shape.train[AXIS_X]));
+        TEST_ASSERT_TRUE(takt_train_below_zero(&shape.train[AXIS_X]) < 0.05);
     }
 }
 
@@ -142,19 +143,19 @@ static void test_an_axis_at_rest_is_sent_where_it_is_to_the_last_bit(void)
     config.keeps_way = true;
     config.mode[AXIS_X][0] = random_mode();
     config.mode[AXIS_Z][0] = random_mode();
-    shape_init(&shape, &config);
-    TEST_ASSERT_TRUE(shape_is_settled(&shape));
+    takt_shape_init(&shape, &config);
+    TEST_ASSERT_TRUE(takt_shape_is_settled(&shape));
     set = at;
-    shape_cycle(&shape, &set);
+    takt_shape_cycle(&shape, &set);
     TEST_ASSERT_FALSE(point_is_same(&set, &at));
-    TEST_ASSERT_FALSE(shape_is_settled(&shape));
+    TEST_ASSERT_FALSE(takt_shape_is_settled(&shape));
     for (uint32_t n = 0; n < shape.cycles; n++) {
         set = at;
-        TEST_ASSERT_FALSE(shape_is_settled(&shape));
-        shape_cycle(&shape, &set);
-        TEST_ASSERT_TRUE(point_is_same(shape_input(&shape), &at));
+        TEST_ASSERT_FALSE(takt_shape_is_settled(&shape));
+        takt_shape_cycle(&shape, &set);
+        TEST_ASSERT_TRUE(point_is_same(takt_shape_input(&shape), &at));
     }
-    TEST_ASSERT_TRUE(shape_is_settled(&shape));
+    TEST_ASSERT_TRUE(takt_shape_is_settled(&shape));
     TEST_ASSERT_TRUE(point_is_same(&set, &at));
 }
 
@@ -164,13 +165,13 @@ static void test_a_restart_forgets_what_came_before(void)
     struct point set = {{1, 2, 3, 0, 0, 0}};
 
     config.mode[AXIS_X][0] = random_mode();
-    shape_init(&shape, &config);
-    shape_cycle(&shape, &set);
-    shape_restart(&shape, &there);
+    takt_shape_init(&shape, &config);
+    takt_shape_cycle(&shape, &set);
+    takt_shape_restart(&shape, &there);
     set = there;
-    shape_cycle(&shape, &set);
+    takt_shape_cycle(&shape, &set);
     TEST_ASSERT_TRUE(point_is_same(&set, &there));
-    TEST_ASSERT_TRUE(shape_is_settled(&shape));
+    TEST_ASSERT_TRUE(takt_shape_is_settled(&shape));
 }
 
 static void test_trains_without_negative_weights_take_nothing_of_the_limits(void)
@@ -179,8 +180,8 @@ static void test_trains_without_negative_weights_take_nothing_of_the_limits(void
         .velocity_mm_s = {100}, .acceleration_mm_s2 = {1000}, .jerk_mm_s3 = {50000}};
 
     config.mode[AXIS_X][0] = (struct shape_mode){25, 0.03, 1};
-    shape_init(&shape, &config);
-    shape_leave(&shape, &limits);
+    takt_shape_init(&shape, &config);
+    takt_shape_leave(&shape, &limits);
     TEST_ASSERT_TRUE(limits.velocity_mm_s[AXIS_X] == 100);
     TEST_ASSERT_TRUE(limits.acceleration_mm_s2[AXIS_X] == 1000);
     TEST_ASSERT_TRUE(limits.jerk_mm_s3[AXIS_X] == 50000);
@@ -194,8 +195,8 @@ static void test_the_neutral_train_takes_a_twentieth_at_most(void)
 
     config.keeps_way = true;
     config.mode[AXIS_X][0] = (struct shape_mode){25, 0.03, 1};
-    shape_init(&shape, &config);
-    shape_leave(&shape, &limits);
+    takt_shape_init(&shape, &config);
+    takt_shape_leave(&shape, &limits);
     TEST_ASSERT_DOUBLE_WITHIN(50, 50000 / 1.0473, limits.jerk_mm_s3[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(1, 1000 / 1.0473, limits.acceleration_mm_s2[AXIS_X]);
     TEST_ASSERT_TRUE(limits.velocity_mm_s[AXIS_X] > 98);
@@ -204,16 +205,16 @@ static void test_the_neutral_train_takes_a_twentieth_at_most(void)
 static void test_modes_that_do_not_fit_the_cycle_are_refused(void)
 {
     config.mode[AXIS_X][0] = (struct shape_mode){251, 0.03, 1};
-    TEST_ASSERT_NOT_NULL(shape_init(&shape, &config));
+    TEST_ASSERT_NOT_NULL(takt_shape_init(&shape, &config));
     config.mode[AXIS_X][0].hz = 250;
-    TEST_ASSERT_NULL(shape_init(&shape, &config));
+    TEST_ASSERT_NULL(takt_shape_init(&shape, &config));
     config.mode[AXIS_X][0].hz = 1e-9;
-    TEST_ASSERT_NOT_NULL(shape_init(&shape, &config));
+    TEST_ASSERT_NOT_NULL(takt_shape_init(&shape, &config));
     config.mode[AXIS_X][0].hz = config.mode[AXIS_X][1].hz = 1.9;
     config.keeps_way = true;
-    TEST_ASSERT_NOT_NULL(shape_init(&shape, &config));
+    TEST_ASSERT_NOT_NULL(takt_shape_init(&shape, &config));
     config.mode[AXIS_X][1].hz = 0;
-    TEST_ASSERT_NULL(shape_init(&shape, &config));
+    TEST_ASSERT_NULL(takt_shape_init(&shape, &config));
 }
 
 int main(void)

@@ -22,7 +22,7 @@ static double grown(double from, double times, unsigned steps)
 
 static double braked(const struct braking_limits *l, double feed, double acceleration, double to)
 {
-    return (double)braking_way(l, (float)feed, (float)acceleration, (float)to);
+    return (double)takt_braking_way(l, (float)feed, (float)acceleration, (float)to);
 }
 
 /* 2 sqrt(V/J) of a half V at no limit of acceleration; V^2/2A + V A/2J with one. */
@@ -78,7 +78,7 @@ static void test_nothing_is_to_brake_for_a_feed_that_is_higher(void)
 {
     const struct braking_limits l = {1000.0f, 5e4f};
 
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, braking_way(&l, 20.0f, 0.0f, 30.0f));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, takt_braking_way(&l, 20.0f, 0.0f, 30.0f));
 }
 
 static void test_a_higher_limit_never_takes_a_longer_way(void)
@@ -90,10 +90,10 @@ static void test_a_higher_limit_never_takes_a_longer_way(void)
             const struct braking_limits less = {a, j};
             const struct braking_limits more = {2.0f * a, j};
             const struct braking_limits sharper = {a, 2.0f * j};
-            const float way = braking_way(&less, 80.0f, 0.0f, 5.0f) * 1.0001f;
+            const float way = takt_braking_way(&less, 80.0f, 0.0f, 5.0f) * 1.0001f;
 
-            TEST_ASSERT_TRUE(braking_way(&more, 80.0f, 0.0f, 5.0f) <= way);
-            TEST_ASSERT_TRUE(braking_way(&sharper, 80.0f, 0.0f, 5.0f) <= way);
+            TEST_ASSERT_TRUE(takt_braking_way(&more, 80.0f, 0.0f, 5.0f) <= way);
+            TEST_ASSERT_TRUE(takt_braking_way(&sharper, 80.0f, 0.0f, 5.0f) <= way);
         }
 }
 

@@ -25,11 +25,11 @@ static bool line_to(double x, double y, double within_mm)
 
     move.end.at[AXIS_X] = x;
     move.end.at[AXIS_Y] = y;
-    TEST_ASSERT_TRUE(curve_set_line(&curve, &at, &move.end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&curve, &at, &move.end));
     at = move.end;
-    taken = merge_take(&merge, &move, 1, &curve, within_mm);
+    taken = takt_merge_take(&merge, &move, 1, &curve, within_mm);
     if (!taken) {
-        merge_open(&merge, &move, 1, &curve);
+        takt_merge_open(&merge, &move, 1, &curve);
     }
     return taken;
 }

@@ -29,7 +29,7 @@ static double back_mm;     /* and gone back from there at most */
 
 void setUp(void)
 {
-    smooth_init(&smooth, &mill);
+    takt_smooth_init(&smooth, &mill);
     number = 0;
     backward = 0;
     farthest_mm = 0;
@@ -46,9 +46,9 @@ static struct point end_of_chord(uint32_t chord)
     struct point p = {{0}};
     double sine, cosine;
 
-    maths_sincos(angle, &sine, &cosine);
-    p.at[AXIS_X] = DECIMAL * maths_round(RADIUS_MM * sine / DECIMAL);
-    p.at[AXIS_Y] = DECIMAL * maths_round(RADIUS_MM * cosine / DECIMAL);
+    takt_maths_sincos(angle, &sine, &cosine);
+    p.at[AXIS_X] = DECIMAL * takt_maths_round(RADIUS_MM * sine / DECIMAL);
+    p.at[AXIS_Y] = DECIMAL * takt_maths_round(RADIUS_MM * cosine / DECIMAL);
     return p;
 }
 
@@ -58,7 +58,7 @@ static void follow_circle(const struct smooth_piece *piece)
     const struct point *c = piece->control;
     const double x = (c[1].at[AXIS_X] + 4.0 * c[2].at[AXIS_X] + c[3].at[AXIS_X]) / 6.0;
     const double y = (c[1].at[AXIS_Y] + 4.0 * c[2].at[AXIS_Y] + c[3].at[AXIS_Y]) / 6.0;
-    const double along_mm = RADIUS_MM * maths_atan2(x, y);
+    const double along_mm = RADIUS_MM * takt_maths_atan2(x, y);
 
     farthest_mm = maths_max(farthest_mm, along_mm);
     back_mm = maths_max(back_mm, farthest_mm - along_mm);
@@ -70,7 +70,7 @@ static void take_all(void)
     struct curve curve;
     enum smooth_taken taken;
 
-    while ((taken = smooth_take(&smooth, &scratch, &piece, &curve)) != SMOOTH_NONE) {
+    while ((taken = takt_smooth_take(&smooth, &scratch, &piece, &curve)) != SMOOTH_NONE) {
         if (taken == SMOOTH_PIECE) {
             follow_circle(&piece);
         }
@@ -90,20 +90,20 @@ static void run_line(struct point *start, struct point end, uint32_t of_motion, 
                         .end = end};
     struct curve curve;
 
-    if (!curve_set_line(&curve, start, &end)) {
+    if (!takt_curve_set_line(&curve, start, &end)) {
         return;
     }
-    while (!smooth_has_room(&smooth)) {
+    while (!takt_smooth_has_room(&smooth)) {
         take_all();
     }
-    smooth_push(&smooth, &move, of_motion, &curve);
+    takt_smooth_push(&smooth, &move, of_motion, &curve);
     take_all();
     *start = end;
 }
 
 static void finish(void)
 {
-    smooth_finish(&smooth);
+    takt_smooth_finish(&smooth);
     take_all();
 }
 

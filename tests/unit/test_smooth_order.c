@@ -27,12 +27,12 @@ void setUp(void)
         limits.acceleration_mm_s2[i] = 1000.0;
         limits.jerk_mm_s3[i] = 50000.0;
     }
-    route_init(&route, &limits, TOLERANCE_MM);
+    takt_route_init(&route, &limits, TOLERANCE_MM);
     memset(&at, 0, sizeof at);
     place_mm[0] = 0.0;
     place_mm[1] = 0.0;
     feed_mm_s = 100.0;
-    order_start(&order, 0.0, 0);
+    takt_order_start(&order, 0.0, 0);
 }
 
 void tearDown(void)
@@ -44,7 +44,7 @@ static void push(const struct curve *curve)
     const struct move move = {
         .kind = MOVE_FEED, .feed_mm_s = feed_mm_s, .tolerance_mm = TOLERANCE_MM};
 
-    route_push(&route, &move, 0, curve);
+    takt_route_push(&route, &move, 0, curve);
 }
 
 static void line_to(double x, double y)
@@ -52,7 +52,7 @@ static void line_to(double x, double y)
     struct point end = {{x, y}};
     struct curve line;
 
-    TEST_ASSERT_TRUE(curve_set_line(&line, &at, &end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&line, &at, &end));
     push(&line);
     at = end;
 }
@@ -62,7 +62,7 @@ static void full_circle(double radius_mm)
     const double centre[2] = {at.at[0], at.at[1] + radius_mm};
     struct curve arc;
 
-    TEST_ASSERT_TRUE(curve_set_arc(&arc, &at, &at, PLANE_XY, centre, false, 1));
+    TEST_ASSERT_TRUE(takt_curve_set_arc(&arc, &at, &at, PLANE_XY, centre, false, 1));
     push(&arc);
 }
 
@@ -82,7 +82,7 @@ static void go_to(double x, double y, double chord_mm)
         chord.way[0] = (float)(dx / chords);
         chord.way[1] = (float)(dy / chords);
         chord.believed_mm = 0.0;
-        order_go(&order, &route, &chord);
+        takt_order_go(&order, &route, &chord);
     }
     place_mm[0] = x;
     place_mm[1] = y;
@@ -133,7 +133,7 @@ static bool leaves_out_stroke(double stroke_mm, double chord_mm)
     line_to(1.0 - stroke_mm, 0.0);
     line_to(3.0, 0.0);
     go_to(3.0, 0.0, chord_mm);
-    return order_reaches(&order, route_end(&route));
+    return order_reaches(&order, takt_route_end(&route));
 }
 
 /* Every place and every corner is near in all of these. */
@@ -153,7 +153,7 @@ static bool leaves_out_circle(double radius_mm, double chord_mm)
     full_circle(radius_mm);
     line_to(3.0, 0.0);
     go_to(3.0, 0.0, chord_mm);
-    return order_reaches(&order, route_end(&route));
+    return order_reaches(&order, takt_route_end(&route));
 }
 
 static void test_a_full_circle_is_left_out_up_to_a_diameter_of_the_tolerance(void)
@@ -171,11 +171,11 @@ static void test_a_corner_is_passed_nearer_where_chords_leave_the_curve(void)
 
     line_to(1.0, 0.0);
     line_to(1.0, 1.0);
-    order_go(&order, &route, &chord);
+    takt_order_go(&order, &route, &chord);
     TEST_ASSERT_FALSE(order_reaches(&order, 1.01));
     chord.way[0] = 0.96f;
-    order_start(&order, 0.0, 0);
-    order_go(&order, &route, &chord);
+    takt_order_start(&order, 0.0, 0);
+    takt_order_go(&order, &route, &chord);
     TEST_ASSERT_TRUE(order_reaches(&order, 1.01));
 }
 
@@ -186,12 +186,12 @@ static void test_a_corner_is_not_passed_by_what_only_comes_to_its_place(void)
 
     line_to(1.0, 0.0);
     line_to(1.0, 1.0);
-    order_go(&order, &route, &chord);
+    takt_order_go(&order, &route, &chord);
     TEST_ASSERT_TRUE(order_reaches(&order, 1.0));
     chord.from[0] = 0.93;
     chord.way[0] = 0.0f;
     chord.way[1] = 0.09f;
-    order_go(&order, &route, &chord);
+    takt_order_go(&order, &route, &chord);
     TEST_ASSERT_FALSE(order_reaches(&order, 1.01));
 }
 
@@ -208,8 +208,8 @@ static bool hurries_past(double slow_mm)
     line_to(1.0 + slow_mm, 0.0);
     feed_mm_s = 100.0;
     line_to(3.0, 0.0);
-    order_start(&order, 0.95, 0);
-    order_go(&order, &route, &chord);
+    takt_order_start(&order, 0.95, 0);
+    takt_order_go(&order, &route, &chord);
     return order_reaches(&order, 1.0 + slow_mm + 0.05);
 }
 
@@ -231,16 +231,16 @@ static void test_of_many_stretches_enough_are_kept(void)
         go_to(i % 2 == 0 ? 3.0 : 0.0, 0.01 * (i + 1), 0.05);
         TEST_ASSERT_TRUE(order.count > 0 && order.count <= ORDER_SPANS);
     }
-    TEST_ASSERT_TRUE(order_reaches(&order, route_end(&route)));
+    TEST_ASSERT_TRUE(order_reaches(&order, takt_route_end(&route)));
 }
 
 static void test_the_place_to_rest_at_is_one_that_can_have_been_come_to(void)
 {
     line_to(3.0, 0.0);
     go_to(1.0, 0.0, 0.01);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, order_place(&order, 1.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.1, order_place(&order, 2.0));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.9, order_place(&order, 0.5));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, takt_order_place(&order, 1.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.1, takt_order_place(&order, 2.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.9, takt_order_place(&order, 0.5));
 }
 
 int main(void)

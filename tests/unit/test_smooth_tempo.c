@@ -38,17 +38,17 @@ static void set_machine(double velocity, double acceleration, double jerk)
     limits.velocity_mm_s[AXIS_X] = velocity;
     limits.acceleration_mm_s2[AXIS_X] = acceleration;
     limits.jerk_mm_s3[AXIS_X] = jerk;
-    route_init(&route, &limits, 0.01);
+    takt_route_init(&route, &limits, 0.01);
     route.slots.change_per_s = (float)CHANGE_PER_S;
     route.slots.rounded_per_s2 = 0.0f;
-    TEST_ASSERT_TRUE(curve_set_line(&line, &(struct point){{0}}, &end));
-    route_push(&route, &move, 0, &line);
-    window_init(&window, &route, INTERVAL_S);
+    TEST_ASSERT_TRUE(takt_curve_set_line(&line, &(struct point){{0}}, &end));
+    takt_route_push(&route, &move, 0, &line);
+    takt_window_init(&window, &route, INTERVAL_S);
 }
 
 static void put(double x_mm)
 {
-    window.x[window.count][0] = (int32_t)maths_round(x_mm / window.unit_mm[0]);
+    window.x[window.count][0] = (int32_t)takt_maths_round(x_mm / window.unit_mm[0]);
     window.element[window.count++] = 0;
 }
 
@@ -60,7 +60,7 @@ static void run_at(double feed_mm_s, double part)
     for (unsigned i = 0; i < COUNT; i++) {
         double sine, cosine;
 
-        maths_sincos(MATHS_TWO_PI * (double)i / (COUNT - 1), &sine, &cosine);
+        takt_maths_sincos(MATHS_TWO_PI * (double)i / (COUNT - 1), &sine, &cosine);
         put(x);
         x += INTERVAL_S * feed_mm_s * (1.0 - 0.5 * part * (1.0 - cosine));
     }
@@ -80,7 +80,7 @@ static struct used used_at(unsigned piece, bool end)
 {
     const double d = INTERVAL_S;
     const unsigned k = piece + (end ? 1 : 0);
-    const float *e = tempo.energy + piece;
+    const float *e = tempo.rate_squared + piece;
     const double b = 0.5 * (double)(end ? e[1] + e[2] : e[0] + e[1]);
     const double slope = (double)(end ? e[2] - e[1] : e[1] - e[0]) / d;
     const double bow = (double)(e[2] - 2.0f * e[1] + e[0]) / (d * d);
@@ -117,7 +117,7 @@ static struct used used_most(void)
     return most;
 }
 
-/* Of the pieces as they are timed now, in parts of what they take. */
+/* Time of all pieces as they are timed now, in parts of what they take. */
 static double time_of_all(void)
 {
     double sum = 0.0;
@@ -125,7 +125,8 @@ static double time_of_all(void)
     for (unsigned i = 0; i < tempo.pieces; i++) {
         float slope;
 
-        sum += 1.0 / (double)maths_sqrt((double)tempo_energy(&tempo, (float)i + 1.5f, &slope));
+        sum += 1.0 /
+               (double)maths_sqrt((double)takt_tempo_rate_squared(&tempo, (float)i + 1.5f, &slope));
     }
     return sum / tempo.pieces;
 }
@@ -134,7 +135,7 @@ static void test_a_slow_straight_is_gone_faster_within_every_limit(void)
 {
     set_machine(100.0, 1000.0, 50000.0);
     run_at(40.0, 0.0);
-    tempo_find(&tempo, &window, &route);
+    takt_tempo_find(&tempo, &window, &route);
     const struct used most = used_most();
 
     TEST_ASSERT_TRUE(time_of_all() < 0.8);
@@ -147,11 +148,11 @@ static void test_a_window_begins_and_ends_at_the_rate_that_its_neighbours_have(v
 {
     set_machine(100.0, 1000.0, 50000.0);
     run_at(40.0, 0.0);
-    tempo_find(&tempo, &window, &route);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[0]);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[1]);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[tempo.pieces]);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[tempo.pieces + 1]);
+    takt_tempo_find(&tempo, &window, &route);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[0]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[1]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[tempo.pieces]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[tempo.pieces + 1]);
 }
 
 /* The curve brakes by 1.3 A; the way is hardly long enough to brake by less. */
@@ -162,10 +163,10 @@ static void test_what_is_exceeded_is_drawn_inside_and_nothing_else_goes_beyond(v
     memset(&tempo, 0, sizeof tempo);
     tempo.pieces = window.count - SMOOTH_FIXED;
     for (unsigned i = 0; i < tempo.pieces + 2; i++)
-        tempo.energy[i] = 1.0f;
+        tempo.rate_squared[i] = 1.0f;
     const struct used before = used_most();
 
-    tempo_find(&tempo, &window, &route);
+    takt_tempo_find(&tempo, &window, &route);
     const struct used after = used_most();
 
     TEST_ASSERT_TRUE(before.acceleration > 1.25);
@@ -177,16 +178,16 @@ static void check_no_slower(double acceleration, double jerk)
 {
     set_machine(100.0, acceleration, jerk);
     run_at(50.0, 0.5);
-    tempo_find(&tempo, &window, &route);
+    takt_tempo_find(&tempo, &window, &route);
     const double before = time_of_all();
 
     set_machine(100.0, 2.0 * acceleration, jerk);
     run_at(50.0, 0.5);
-    tempo_find(&tempo, &window, &route);
+    takt_tempo_find(&tempo, &window, &route);
     TEST_ASSERT_TRUE(time_of_all() <= 1.01 * before);
     set_machine(100.0, acceleration, 2.0 * jerk);
     run_at(50.0, 0.5);
-    tempo_find(&tempo, &window, &route);
+    takt_tempo_find(&tempo, &window, &route);
     TEST_ASSERT_TRUE(time_of_all() <= 1.01 * before);
 }
 
@@ -212,11 +213,11 @@ static void test_a_slower_stretch_is_slow_and_the_rest_as_it_was(void)
 
     set_machine(100.0, 1000.0, 50000.0);
     run_at(40.0, 0.0);
-    tempo_slow(&tempo, &window, 30, 8, 0.5f);
-    TEST_ASSERT_EQUAL_FLOAT(0.25f, tempo_energy(&tempo, 31.5f, &slope));
+    takt_tempo_slow(&tempo, &window, 30, 8, 0.5f);
+    TEST_ASSERT_EQUAL_FLOAT(0.25f, takt_tempo_rate_squared(&tempo, 31.5f, &slope));
     TEST_ASSERT_EQUAL_FLOAT(0.0f, slope);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo_energy(&tempo, 10.0f, &slope));
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo_energy(&tempo, 50.0f, &slope));
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, takt_tempo_rate_squared(&tempo, 10.0f, &slope));
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, takt_tempo_rate_squared(&tempo, 50.0f, &slope));
 }
 
 int main(void)

@@ -83,7 +83,7 @@ static void test_the_angle_is_a_whole_number_of_counts(void)
 
         feedback = virtual_spindle_step(&spindle, CYCLE_S, 1000, 0);
         counts = feedback.angle_rev * 64;
-        TEST_ASSERT_EQUAL_DOUBLE(maths_floor(counts), counts);
+        TEST_ASSERT_EQUAL_DOUBLE(takt_maths_floor(counts), counts);
     }
     TEST_ASSERT_GREATER_THAN(0, feedback.angle_rev);
 }

@@ -38,8 +38,8 @@ static const char *walk_line(enum evaluate_form form, int64_t x, int64_t y, int6
     struct evaluate_tick tick;
 
     walked[0] = '\0';
-    evaluate_line_begin(&line, form, delta);
-    while (evaluate_line_next(&line, &tick))
+    takt_evaluate_line_begin(&line, form, delta);
+    while (takt_evaluate_line_next(&line, &tick))
         write_tick(&tick);
     return walked;
 }
@@ -57,8 +57,8 @@ static const char *walk_arc(const struct evaluate_arc_config *config)
     struct evaluate_tick tick;
 
     walked[0] = '\0';
-    evaluate_arc_begin(&arc, config);
-    while (evaluate_arc_next(&arc, &tick))
+    takt_evaluate_arc_begin(&arc, config);
+    while (takt_evaluate_arc_next(&arc, &tick))
         write_tick(&tick);
     return walked;
 }
@@ -124,8 +124,8 @@ static void test_every_quadrant_turns_the_right_way(void)
         struct evaluate_tick tick;
 
         walked[0] = '\0';
-        evaluate_arc_begin(&arc, &config);
-        TEST_ASSERT_TRUE(evaluate_arc_next(&arc, &tick));
+        takt_evaluate_arc_begin(&arc, &config);
+        TEST_ASSERT_TRUE(takt_evaluate_arc_next(&arc, &tick));
         write_tick(&tick);
         TEST_ASSERT_EQUAL_STRING(starts[i].first, walked);
     }
@@ -137,8 +137,8 @@ static unsigned count_ticks(const struct evaluate_arc_config *config)
     struct evaluate_tick tick;
     unsigned ticks = 0;
 
-    evaluate_arc_begin(&arc, config);
-    while (evaluate_arc_next(&arc, &tick))
+    takt_evaluate_arc_begin(&arc, config);
+    while (takt_evaluate_arc_next(&arc, &tick))
         ticks++;
     return ticks;
 }
@@ -167,10 +167,10 @@ static void test_the_rate_of_a_line_is_that_of_its_ticks(void)
     const int64_t delta[AXIS_COUNT] = {4, -3};
     struct evaluate_line line;
 
-    evaluate_line_begin(&line, EVALUATE_IMPROVED, delta);
-    TEST_ASSERT_EQUAL_DOUBLE(0.8, evaluate_line_rate(&line));
-    evaluate_line_begin(&line, EVALUATE_PLAIN, delta);
-    TEST_ASSERT_EQUAL_DOUBLE(1.4, evaluate_line_rate(&line));
+    takt_evaluate_line_begin(&line, EVALUATE_IMPROVED, delta);
+    TEST_ASSERT_EQUAL_DOUBLE(0.8, takt_evaluate_line_rate(&line));
+    takt_evaluate_line_begin(&line, EVALUATE_PLAIN, delta);
+    TEST_ASSERT_EQUAL_DOUBLE(1.4, takt_evaluate_line_rate(&line));
 }
 
 /* f0 = V max(|I|, |J|) / (h R): from V/h on an axis to V/(sqrt 2 h) at 45 degrees; plain V (|I| + |J|) / (h R) */
@@ -179,14 +179,14 @@ static void test_the_rate_of_an_arc_follows_the_angle(void)
     struct evaluate_arc_config config = arc_of(EVALUATE_IMPROVED, 3, 4, -3, -4, true);
     struct evaluate_arc arc;
 
-    evaluate_arc_begin(&arc, &config);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.8, evaluate_arc_rate(&arc));
+    takt_evaluate_arc_begin(&arc, &config);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.8, takt_evaluate_arc_rate(&arc));
     config.form = EVALUATE_PLAIN;
-    evaluate_arc_begin(&arc, &config);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.4, evaluate_arc_rate(&arc));
+    takt_evaluate_arc_begin(&arc, &config);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.4, takt_evaluate_arc_rate(&arc));
     config = arc_of(EVALUATE_IMPROVED, 10, 10, -10, -10, true);
-    evaluate_arc_begin(&arc, &config);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, maths_sqrt(0.5), evaluate_arc_rate(&arc));
+    takt_evaluate_arc_begin(&arc, &config);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, maths_sqrt(0.5), takt_evaluate_arc_rate(&arc));
 }
 
 /*
@@ -200,8 +200,8 @@ static void test_the_straight_axis_of_a_helix_follows_the_angle_and_not_the_coor
     for (unsigned n = 0; n <= 10000; n++) {
         const double part = 1e-4 * n;
 
-        largest =
-            maths_max(largest, maths_sin(part * MATHS_PI / 4) / maths_sin(MATHS_PI / 4) - part);
+        largest = maths_max(
+            largest, takt_maths_sin(part * MATHS_PI / 4) / takt_maths_sin(MATHS_PI / 4) - part);
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.042, largest);
 
@@ -214,10 +214,11 @@ static void test_the_straight_axis_of_a_helix_follows_the_angle_and_not_the_coor
     double worst = 0;
 
     config.turns = 1;
-    evaluate_helix_begin(&helix, &config, plane, delta);
-    while (evaluate_helix_next(&helix, &tick))
-        worst = maths_max(worst, maths_abs(8000.0 * evaluate_arc_angle(&helix.arc) / MATHS_TWO_PI -
-                                           (double)helix.done[AXIS_Z]));
+    takt_evaluate_helix_begin(&helix, &config, plane, delta);
+    while (takt_evaluate_helix_next(&helix, &tick))
+        worst =
+            maths_max(worst, maths_abs(8000.0 * takt_evaluate_arc_angle(&helix.arc) / MATHS_TWO_PI -
+                                       (double)helix.done[AXIS_Z]));
     TEST_ASSERT_TRUE(worst <= 1.0);
 }
 
@@ -230,8 +231,8 @@ static void test_a_steep_helix_steps_its_straight_axis_at_every_tick(void)
     struct evaluate_tick tick;
     unsigned ticks = 0;
 
-    evaluate_helix_begin(&helix, &config, plane, delta);
-    while (evaluate_helix_next(&helix, &tick)) {
+    takt_evaluate_helix_begin(&helix, &config, plane, delta);
+    while (takt_evaluate_helix_next(&helix, &tick)) {
         TEST_ASSERT_EQUAL_UINT8(1U << AXIS_A, tick.axes & 1U << AXIS_A);
         TEST_ASSERT_EQUAL_UINT8(1U << AXIS_A, tick.direction & 1U << AXIS_A);
         ticks++;

@@ -47,7 +47,7 @@ static void begin(enum steps_form form)
     virtual_steppers_init(&steppers, drives, CYCLE_NS);
     virtual_steppers_listen(&steppers, &(struct virtual_steppers_listener){note_pulse, NULL});
     port = virtual_steppers_get_port(&steppers);
-    steps_init(&steps, &config, &start);
+    takt_steps_init(&steps, &config, &start);
     pulses.count = 0;
 }
 
@@ -62,7 +62,7 @@ void tearDown(void)
 
 static bool cycle(const struct point *setpoint, const struct curve *curve, uint32_t number)
 {
-    bool good = steps_cycle(&steps, &port, setpoint, curve, number);
+    bool good = takt_steps_cycle(&steps, &port, setpoint, curve, number);
 
     virtual_steppers_end_cycle(&steppers);
     return good;
@@ -79,11 +79,11 @@ static void test_a_setpoint_is_reported_three_cycles_later(void)
     struct point to = at_x(0.1);
 
     for (unsigned k = 0; k < STEPS_LATENCY_CYCLES; k++) {
-        steps_get_actual(&steps, &actual);
+        takt_steps_get_actual(&steps, &actual);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, actual.at[AXIS_X]);
         TEST_ASSERT_TRUE(cycle(&to, NULL, 0));
     }
-    steps_get_actual(&steps, &actual);
+    takt_steps_get_actual(&steps, &actual);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, actual.at[AXIS_X]);
 }
 
@@ -118,11 +118,11 @@ static void test_a_slow_axis_steps_evenly_too(void)
 /* A curve at constant feed, the given one or the little less that ends on a cycle: which is returned. */
 static double run_curve(const struct curve *curve, double feed_mm_s, uint32_t number)
 {
-    unsigned cycles = (unsigned)maths_ceil(curve->length_mm / (feed_mm_s * CYCLE_S));
+    unsigned cycles = (unsigned)takt_maths_ceil(curve->length_mm / (feed_mm_s * CYCLE_S));
     struct point to;
 
     for (unsigned k = 1; k < cycles; k++) {
-        curve_point(curve, curve->length_mm * (double)k / (double)cycles, &to);
+        takt_curve_point(curve, curve->length_mm * (double)k / (double)cycles, &to);
         TEST_ASSERT_TRUE(cycle(&to, curve, number));
     }
     to = curve->end;
@@ -134,11 +134,11 @@ static double run_curve(const struct curve *curve, double feed_mm_s, uint32_t nu
 /* The same without a stay at its end. */
 static void pass_curve(const struct curve *curve, double feed_mm_s, uint32_t number)
 {
-    unsigned cycles = (unsigned)maths_ceil(curve->length_mm / (feed_mm_s * CYCLE_S));
+    unsigned cycles = (unsigned)takt_maths_ceil(curve->length_mm / (feed_mm_s * CYCLE_S));
     struct point to;
 
     for (unsigned k = 1; k <= cycles; k++) {
-        curve_point(curve, curve->length_mm * ((double)k - 0.5) / (double)cycles, &to);
+        takt_curve_point(curve, curve->length_mm * ((double)k - 0.5) / (double)cycles, &to);
         TEST_ASSERT_TRUE(cycle(&to, curve, number));
     }
 }
@@ -146,14 +146,14 @@ static void pass_curve(const struct curve *curve, double feed_mm_s, uint32_t num
 static void expect_at(const struct point *end)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        TEST_ASSERT_EQUAL_INT32((int32_t)maths_round(end->at[i] * 1000.0),
+        TEST_ASSERT_EQUAL_INT32((int32_t)takt_maths_round(end->at[i] * 1000.0),
                                 steppers.axis[i].position_steps);
 }
 
 /* As if all had stood there at power-on. */
 static void start_at(const struct point *start)
 {
-    steps_init(&steps, &config, start);
+    takt_steps_init(&steps, &config, start);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         steppers.axis[i].position_steps = (int32_t)steps.at[i];
 }
@@ -164,7 +164,7 @@ static struct curve circle(double radius_mm, double rise_mm)
     struct point start = {{radius_mm, 0, 0}}, end = {{radius_mm, 0, rise_mm}};
     struct curve curve;
 
-    TEST_ASSERT_TRUE(curve_set_arc(&curve, &start, &end, PLANE_XY, centre, false, 1));
+    TEST_ASSERT_TRUE(takt_curve_set_arc(&curve, &start, &end, PLANE_XY, centre, false, 1));
     return curve;
 }
 
@@ -177,12 +177,13 @@ static double worst_speed(double radius_mm, double feed_mm_s)
     double worst = 0;
     double begin_ns = (double)pulses.time_ns[0];
     double angle_ns = feed_mm_s / radius_mm * 1e-9;
-    double start = maths_asin(0.5e-3 / radius_mm);
+    double start = takt_maths_asin(0.5e-3 / radius_mm);
 
     for (unsigned i = 1; i < pulses.count; i++) {
         double dt_ns = (double)(pulses.time_ns[i] - pulses.time_ns[i - 1]);
         double angle = start + angle_ns * ((double)pulses.time_ns[i] - begin_ns - 0.5 * dt_ns);
-        double leading = maths_max(maths_abs(maths_sin(angle)), maths_abs(maths_cos(angle)));
+        double leading =
+            maths_max(maths_abs(takt_maths_sin(angle)), maths_abs(takt_maths_cos(angle)));
 
         worst = maths_max(worst, maths_abs(1e-3 / leading / (dt_ns * 1e-9) / feed_mm_s - 1.0));
     }
@@ -215,11 +216,11 @@ static void test_at_a_constant_rate_path_speed_would_swing_by_root_2(void)
     struct evaluate_tick tick;
     double lowest = 2, highest = 0;
 
-    evaluate_arc_begin(&on, &arc);
+    takt_evaluate_arc_begin(&on, &arc);
     do {
-        lowest = maths_min(lowest, evaluate_arc_rate(&on));
-        highest = maths_max(highest, evaluate_arc_rate(&on));
-    } while (evaluate_arc_next(&on, &tick));
+        lowest = maths_min(lowest, takt_evaluate_arc_rate(&on));
+        highest = maths_max(highest, takt_evaluate_arc_rate(&on));
+    } while (takt_evaluate_arc_next(&on, &tick));
     TEST_ASSERT_DOUBLE_WITHIN(0.002, maths_sqrt(2.0), highest / lowest);
 }
 
@@ -270,7 +271,7 @@ static void run_line(struct point *at, uint32_t number, double feed_mm_s)
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         end.at[i] += random_between(-3, 3);
-    TEST_ASSERT_TRUE(curve_set_line(&line, at, &end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&line, at, &end));
     (void)run_curve(&line, feed_mm_s, number);
     *at = end;
 }
@@ -293,8 +294,8 @@ static void test_lines_by_evaluation_functions_end_exactly_and_miss_no_step(void
     }
 }
 
-/* A chain of arcs and lines, passed at full feed: at their joints a form has a step or two left over. */
-static void test_no_joint_asks_a_drive_for_more_than_its_rate(void)
+/* A chain of arcs and lines, passed at full feed: at their junctions a form has a step or two left over. */
+static void test_no_junction_asks_a_drive_for_more_than_its_rate(void)
 {
     static const enum steps_form forms[] = {STEPS_EVEN, STEPS_IMPROVED, STEPS_PLAIN};
 
@@ -308,12 +309,12 @@ static void test_no_joint_asks_a_drive_for_more_than_its_rate(void)
             struct point end = {{5, 0, 0.01 * n}};
             struct curve curve;
 
-            maths_sincos(0.3 * n, &end.at[AXIS_Y], &end.at[AXIS_X]);
+            takt_maths_sincos(0.3 * n, &end.at[AXIS_Y], &end.at[AXIS_X]);
             end.at[AXIS_X] *= 5;
             end.at[AXIS_Y] *= 5;
-            TEST_ASSERT_TRUE(n % 3 == 0
-                                 ? curve_set_line(&curve, &at, &end)
-                                 : curve_set_arc(&curve, &at, &end, PLANE_XY, centre, false, 1));
+            TEST_ASSERT_TRUE(
+                n % 3 == 0 ? takt_curve_set_line(&curve, &at, &end)
+                           : takt_curve_set_arc(&curve, &at, &end, PLANE_XY, centre, false, 1));
             pass_curve(&curve, 60, n);
             at = end;
         }
@@ -335,7 +336,7 @@ static void test_an_improved_line_takes_as_many_ticks_as_its_leading_axis_has_st
     struct curve line;
 
     begin(STEPS_IMPROVED);
-    TEST_ASSERT_TRUE(curve_set_line(&line, &start, &end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&line, &start, &end));
     (void)run_curve(&line, 20, 1);
     TEST_ASSERT_EQUAL_UINT(2000, pulses.count);
     begin(STEPS_PLAIN);
@@ -367,7 +368,7 @@ static void test_a_setpoint_beside_its_curve_is_followed_all_the_same(void)
     for (unsigned n = 0; n < 100; n++) {
         const double s = 0.03 * n;
 
-        curve_point(&curve, s, &to);
+        takt_curve_point(&curve, s, &to);
         to.at[AXIS_Z] += 0.1 * s; /* a correction */
         TEST_ASSERT_TRUE(cycle(&to, &curve, 1));
     }
@@ -382,9 +383,9 @@ static void test_a_setpoint_too_far_for_the_drive_is_an_error_that_names_axis_an
 
     TEST_ASSERT_TRUE(cycle(&to, NULL, 0));
     TEST_ASSERT_FALSE(cycle(&to, NULL, 0));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STEP_RATE, steps_get_fault(&steps)->code);
-    TEST_ASSERT_EQUAL_STRING("X", steps_get_fault(&steps)->word);
-    TEST_ASSERT_DOUBLE_WITHIN(1, 300000, steps_get_fault(&steps)->value);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STEP_RATE, takt_steps_get_fault(&steps)->code);
+    TEST_ASSERT_EQUAL_STRING("X", takt_steps_get_fault(&steps)->word);
+    TEST_ASSERT_DOUBLE_WITHIN(1, 300000, takt_steps_get_fault(&steps)->value);
     TEST_ASSERT_EQUAL_UINT(0, pulses.count);
 }
 
@@ -394,7 +395,7 @@ static void test_what_is_no_position_is_an_error(void)
 
     (void)cycle(&to, NULL, 0);
     TEST_ASSERT_FALSE(cycle(&to, NULL, 0));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_RANGE, steps_get_fault(&steps)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_RANGE, takt_steps_get_fault(&steps)->code);
 }
 
 static bool refuse(void *context, const struct step_pulse *pulse)
@@ -409,9 +410,9 @@ static void test_an_output_without_room_is_an_error(void)
     struct step_port full = {refuse, NULL, NULL};
     struct point to = at_x(0.01);
 
-    TEST_ASSERT_TRUE(steps_cycle(&steps, &full, &to, NULL, 0));
-    TEST_ASSERT_FALSE(steps_cycle(&steps, &full, &to, NULL, 0));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STEP_PORT, steps_get_fault(&steps)->code);
+    TEST_ASSERT_TRUE(takt_steps_cycle(&steps, &full, &to, NULL, 0));
+    TEST_ASSERT_FALSE(takt_steps_cycle(&steps, &full, &to, NULL, 0));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STEP_PORT, takt_steps_get_fault(&steps)->code);
 }
 
 static void test_missed_steps_are_seen_by_the_encoder(void)
@@ -426,7 +427,7 @@ static void test_missed_steps_are_seen_by_the_encoder(void)
         good = cycle(&to, NULL, 0);
     }
     TEST_ASSERT_FALSE(good);
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_FOLLOWING, steps_get_fault(&steps)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_FOLLOWING, takt_steps_get_fault(&steps)->code);
     TEST_ASSERT_TRUE(steppers.axis[AXIS_X].missed > 50);
     TEST_ASSERT_DOUBLE_WITHIN(100, 60000, steppers.axis[AXIS_X].rate_peak_hz);
 }
@@ -442,7 +443,7 @@ static void test_after_a_fault_the_axes_brake_with_their_deceleration(void)
     }
     before = steppers.axis[AXIS_X].steps;
     for (unsigned k = 0; k < 100; k++) {
-        steps_brake(&steps, &port);
+        takt_steps_brake(&steps, &port);
         virtual_steppers_end_cycle(&steppers);
     }
     /* v^2 / (2 a) = 1.25 mm, less half a cycle's way */
@@ -455,9 +456,9 @@ static void test_after_a_restart_the_axes_are_where_their_encoders_say(void)
     struct point actual = {{0}};
 
     steppers.axis[AXIS_Y].position_steps = 123;
-    steps_brake(&steps, &port);
-    steps_restart(&steps);
-    steps_get_actual(&steps, &actual);
+    takt_steps_brake(&steps, &port);
+    takt_steps_restart(&steps);
+    takt_steps_get_actual(&steps, &actual);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.123, actual.at[AXIS_Y]);
     TEST_ASSERT_TRUE(cycle(&actual, NULL, 0));
     TEST_ASSERT_TRUE(cycle(&actual, NULL, 0));
@@ -474,7 +475,7 @@ int main(void)
     RUN_TEST(test_at_a_constant_rate_path_speed_would_swing_by_root_2);
     RUN_TEST(test_the_even_form_is_off_by_half_a_step_at_most);
     RUN_TEST(test_lines_by_evaluation_functions_end_exactly_and_miss_no_step);
-    RUN_TEST(test_no_joint_asks_a_drive_for_more_than_its_rate);
+    RUN_TEST(test_no_junction_asks_a_drive_for_more_than_its_rate);
     RUN_TEST(test_an_improved_line_takes_as_many_ticks_as_its_leading_axis_has_steps);
     RUN_TEST(test_helices_by_evaluation_functions_end_exactly);
     RUN_TEST(test_a_setpoint_beside_its_curve_is_followed_all_the_same);

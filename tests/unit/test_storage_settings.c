@@ -35,7 +35,7 @@ static void add_rotary(void)
 
 void setUp(void)
 {
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     machine.cycle_us = 2000;
     memset(&tables, 0, sizeof tables);
     memset(dcf, 0, sizeof dcf);
@@ -49,7 +49,7 @@ void tearDown(void)
 static void pack(void)
 {
     memset(memory, 0xA5, sizeof memory);
-    size = settings_pack(&machine, &tables, dcf, bytes(), ROOM);
+    size = takt_settings_pack(&machine, &tables, dcf, bytes(), ROOM);
     TEST_ASSERT_GREATER_THAN(SETTINGS_HEAD_BYTES, size);
 }
 
@@ -57,12 +57,12 @@ static void pack(void)
 static void seal(void)
 {
     little_put32(bytes() + 4, (uint32_t)size);
-    little_put32(bytes() + 8, crc32_add(CRC32_START, bytes() + 12, size - 12));
+    little_put32(bytes() + 8, takt_crc32_add(CRC32_START, bytes() + 12, size - 12));
 }
 
 static bool read_back(void)
 {
-    return settings_read(bytes(), size, &found, &found_tables, found_dcf, &wrong);
+    return takt_settings_read(bytes(), size, &found, &found_tables, found_dcf, &wrong);
 }
 
 static void expect_refusal(enum takt_error code)
@@ -70,7 +70,7 @@ static void expect_refusal(enum takt_error code)
     char text[DIAGNOSTIC_TEXT_MAX];
 
     TEST_ASSERT_FALSE(read_back());
-    (void)diagnostic_text(&wrong, text);
+    (void)takt_diagnostic_text(&wrong, text);
     TEST_ASSERT_EQUAL_MESSAGE(code, wrong.code, text);
 }
 
@@ -78,15 +78,15 @@ static void expect_same(const struct settings_field *field, const void *a, const
 {
     uint8_t first[256], second[256];
 
-    settings_field_get(field, a, first);
-    settings_field_get(field, b, second);
-    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(first, second, settings_field_bytes(field), field->name);
+    takt_settings_field_get(field, a, first);
+    takt_settings_field_get(field, b, second);
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(first, second, takt_settings_field_bytes(field), field->name);
 }
 
 static void expect_same_machine(void)
 {
-    for (size_t i = 0; i < settings_fields_count; i++) {
-        const struct settings_field *field = &settings_fields[i];
+    for (size_t i = 0; i < takt_settings_fields_count; i++) {
+        const struct settings_field *field = &takt_settings_fields[i];
 
         if (!field->of_axis)
             expect_same(field, &machine, &found);
@@ -95,7 +95,7 @@ static void expect_same_machine(void)
                 expect_same(field, &machine.axis[axis], &found.axis[axis]);
         }
     }
-    TEST_ASSERT_EQUAL_HEX(machine_axes(&machine), machine_axes(&found));
+    TEST_ASSERT_EQUAL_HEX(takt_machine_axes(&machine), takt_machine_axes(&found));
 }
 
 static void test_a_machine_is_read_back_bit_for_bit(void)
@@ -115,9 +115,9 @@ static void test_a_machine_is_read_back_bit_for_bit(void)
 
 static void test_every_field_has_a_number_of_its_own(void)
 {
-    for (size_t i = 0; i < settings_fields_count; i++) {
+    for (size_t i = 0; i < takt_settings_fields_count; i++) {
         for (size_t k = 0; k < i; k++)
-            TEST_ASSERT_NOT_EQUAL(settings_fields[i].number, settings_fields[k].number);
+            TEST_ASSERT_NOT_EQUAL(takt_settings_fields[i].number, takt_settings_fields[k].number);
     }
 }
 
@@ -137,11 +137,11 @@ static void make_volume(uint8_t inputs)
     }
     for (uint8_t i = 0; i < 3; i++)
         table.output[i].axis = i;
-    for (uint32_t row = 0; row < table_rows(&table); row++) {
+    for (uint32_t row = 0; row < takt_table_rows(&table); row++) {
         for (unsigned o = 0; o < 3; o++)
             table.value_mm[3 * row + o] = (float)(0.02 * sin(0.7 * row + o));
     }
-    TEST_ASSERT_TRUE(grid_set(&tables.volume, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_grid_set(&tables.volume, &table, &wrong));
 }
 
 static void make_axis(uint8_t axis, uint8_t corrected)
@@ -158,7 +158,7 @@ static void make_axis(uint8_t axis, uint8_t corrected)
         table.value_mm[2 * k] = (float)(0.01 * sin((double)k));
         table.value_mm[2 * k + 1] = (float)(0.01 * cos((double)k));
     }
-    TEST_ASSERT_TRUE(axis_tables_add(&tables.axes, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_axis_tables_add(&tables.axes, &table, &wrong));
 }
 
 /* The same bits of the corrections at random points. */
@@ -174,11 +174,11 @@ static void expect_same_corrections(void)
             approach[axis] = (float)(rand() % 3 - 1);
         }
         if (tables.volume.inputs != 0) {
-            (void)grid_add(&tables.volume, &at, 1.0F, a);
-            (void)grid_add(&found_tables.volume, &at, 1.0F, b);
+            (void)takt_grid_add(&tables.volume, &at, 1.0F, a);
+            (void)takt_grid_add(&found_tables.volume, &at, 1.0F, b);
         }
-        (void)axis_tables_sum(&tables.axes, &at, approach, 1.0F, a);
-        (void)axis_tables_sum(&found_tables.axes, &at, approach, 1.0F, b);
+        (void)takt_axis_tables_sum(&tables.axes, &at, approach, 1.0F, a);
+        (void)takt_axis_tables_sum(&found_tables.axes, &at, approach, 1.0F, b);
         TEST_ASSERT_EQUAL_MEMORY(a, b, sizeof a);
     }
 }
@@ -206,8 +206,8 @@ static void test_a_room_that_is_too_small_is_refused(void)
     make_volume(3);
     pack();
     for (size_t room = 0; room < size; room += 8)
-        TEST_ASSERT_EQUAL(0, settings_pack(&machine, &tables, dcf, bytes(), room));
-    TEST_ASSERT_EQUAL(size, settings_pack(&machine, &tables, dcf, bytes(), size));
+        TEST_ASSERT_EQUAL(0, takt_settings_pack(&machine, &tables, dcf, bytes(), room));
+    TEST_ASSERT_EQUAL(size, takt_settings_pack(&machine, &tables, dcf, bytes(), size));
 }
 
 static void test_every_bit_that_is_wrong_is_found(void)
@@ -356,10 +356,10 @@ static void test_corrections_that_leave_too_little_of_an_axis_are_refused(void)
     static struct correction scratch;
 
     make_volume(3);
-    TEST_ASSERT_TRUE(settings_check_share(&machine, &tables, &scratch, &wrong));
+    TEST_ASSERT_TRUE(takt_settings_check_share(&machine, &tables, &scratch, &wrong));
     machine.axis[AXIS_X].max_jerk_mm_s3 = 30;
     machine.correction.fade_s = 0.001;
-    TEST_ASSERT_FALSE(settings_check_share(&machine, &tables, &scratch, &wrong));
+    TEST_ASSERT_FALSE(takt_settings_check_share(&machine, &tables, &scratch, &wrong));
     TEST_ASSERT_EQUAL(TAKT_ERROR_SETTINGS_SHARE, wrong.code);
 }
 

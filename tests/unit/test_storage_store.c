@@ -27,7 +27,7 @@ static struct {
 
 #define NEVER 1000000U
 
-/* Of the longest set: an erasure, and all words. */
+/* Steps of storing the longest set: an erasure, and all words. */
 #define STEPS (1U + SECTOR_BYTES / FLASH_WORD_BYTES)
 
 static uint8_t *sector(unsigned i)
@@ -113,7 +113,7 @@ static void start(void)
                                     .erase = erase,
                                     .program = program};
 
-    store_open(&store, &port);
+    takt_store_open(&store, &port);
 }
 
 void setUp(void)
@@ -144,11 +144,11 @@ static bool save(unsigned number)
 {
     uint8_t bytes[SET_MAX];
     const uint32_t size = make_set(number, bytes);
-    bool good = store_begin(&store, size);
+    bool good = takt_store_begin(&store, size);
 
     for (uint32_t i = 0; i < size && good; i += 7)
-        good = store_write(&store, bytes + i, size - i < 7 ? size - i : 7);
-    return good && store_commit(&store);
+        good = takt_store_write(&store, bytes + i, size - i < 7 ? size - i : 7);
+    return good && takt_store_commit(&store);
 }
 
 static bool holds(unsigned number)
@@ -157,7 +157,7 @@ static bool holds(unsigned number)
     const uint8_t *bytes;
     uint32_t size;
 
-    return store_get(&store, &bytes, &size) && size == make_set(number, expected) &&
+    return takt_store_get(&store, &bytes, &size) && size == make_set(number, expected) &&
            memcmp(bytes, expected, size) == 0;
 }
 
@@ -166,9 +166,9 @@ static void test_a_blank_flash_holds_nothing(void)
     const uint8_t *bytes;
     uint32_t size;
 
-    TEST_ASSERT_FALSE(store_get(&store, &bytes, &size));
-    TEST_ASSERT_FALSE(store_commit(&store));
-    TEST_ASSERT_NULL(store_look(&store));
+    TEST_ASSERT_FALSE(takt_store_get(&store, &bytes, &size));
+    TEST_ASSERT_FALSE(takt_store_commit(&store));
+    TEST_ASSERT_NULL(takt_store_look(&store));
 }
 
 static void test_the_last_set_stored_is_there_after_power_off(void)
@@ -188,29 +188,29 @@ static void test_every_size_up_to_the_room_can_be_stored_and_none_beyond(void)
     uint32_t size;
 
     memset(bytes, 0x5A, sizeof bytes);
-    for (uint32_t i = 1; i <= store_room(&store); i++) {
-        TEST_ASSERT_TRUE(store_begin(&store, i) && store_write(&store, bytes, i));
-        TEST_ASSERT_TRUE(store_commit(&store));
+    for (uint32_t i = 1; i <= takt_store_room(&store); i++) {
+        TEST_ASSERT_TRUE(takt_store_begin(&store, i) && takt_store_write(&store, bytes, i));
+        TEST_ASSERT_TRUE(takt_store_commit(&store));
         start();
-        TEST_ASSERT_TRUE(store_get(&store, &found, &size));
+        TEST_ASSERT_TRUE(takt_store_get(&store, &found, &size));
         TEST_ASSERT_EQUAL(i, size);
         TEST_ASSERT_EQUAL(0, (uintptr_t)found % 8);
     }
-    TEST_ASSERT_FALSE(store_begin(&store, store_room(&store) + 1));
-    TEST_ASSERT_FALSE(store_begin(&store, 0));
+    TEST_ASSERT_FALSE(takt_store_begin(&store, takt_store_room(&store) + 1));
+    TEST_ASSERT_FALSE(takt_store_begin(&store, 0));
 }
 
 static void test_a_set_that_is_not_complete_cannot_be_committed(void)
 {
     TEST_ASSERT_TRUE(save(1));
-    TEST_ASSERT_TRUE(store_begin(&store, 10) &&
-                     store_write(&store, (const uint8_t *)"123456789", 9));
-    TEST_ASSERT_NULL(store_look(&store));
-    TEST_ASSERT_FALSE(store_commit(&store));
-    TEST_ASSERT_TRUE(store_write(&store, (const uint8_t *)"0", 1));
-    TEST_ASSERT_EQUAL_MEMORY("1234567890", store_look(&store), 10);
-    TEST_ASSERT_FALSE(store_write(&store, (const uint8_t *)"x", 1));
-    TEST_ASSERT_FALSE_MESSAGE(store_commit(&store), "given up");
+    TEST_ASSERT_TRUE(takt_store_begin(&store, 10) &&
+                     takt_store_write(&store, (const uint8_t *)"123456789", 9));
+    TEST_ASSERT_NULL(takt_store_look(&store));
+    TEST_ASSERT_FALSE(takt_store_commit(&store));
+    TEST_ASSERT_TRUE(takt_store_write(&store, (const uint8_t *)"0", 1));
+    TEST_ASSERT_EQUAL_MEMORY("1234567890", takt_store_look(&store), 10);
+    TEST_ASSERT_FALSE(takt_store_write(&store, (const uint8_t *)"x", 1));
+    TEST_ASSERT_FALSE_MESSAGE(takt_store_commit(&store), "given up");
     TEST_ASSERT_TRUE(holds(1));
 }
 

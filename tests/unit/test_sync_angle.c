@@ -12,8 +12,8 @@ static struct angle angle;
 
 void setUp(void)
 {
-    angle_init(&angle);
-    angle_tune(&angle, 0.1);
+    takt_angle_init(&angle);
+    takt_angle_tune(&angle, 0.1);
 }
 
 void tearDown(void)
@@ -25,7 +25,7 @@ static double rev_at(double k, double speed, double acceleration, double counts)
 {
     const double rev = 7.0 + k * (speed + 0.5 * k * acceleration);
 
-    return counts > 0.0 ? maths_floor(rev * counts) / counts : rev;
+    return counts > 0.0 ? takt_maths_floor(rev * counts) / counts : rev;
 }
 
 static void measure(int cycles, double speed, double acceleration, double counts)
@@ -41,7 +41,7 @@ static void test_a_constant_speed_is_known_exactly(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, rev_at(SETTLED - 1, 0.01, 0.0, 0.0), angle.rev);
     TEST_ASSERT_DOUBLE_WITHIN(1e-11, 0.01, angle.speed);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, rev_at(SETTLED + 4, 0.01, 0.0, 0.0),
-                              angle_look_ahead(&angle, 5.0).rev);
+                              takt_angle_look_ahead(&angle, 5.0).rev);
 }
 
 static void test_a_constant_acceleration_puts_nothing_off(void)
@@ -50,7 +50,7 @@ static void test_a_constant_acceleration_puts_nothing_off(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, rev_at(SETTLED - 1, -0.02, 1e-4, 0.0), angle.rev);
     TEST_ASSERT_DOUBLE_WITHIN(1e-11, 1e-4, angle.acceleration);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, rev_at(SETTLED + 1, -0.02, 1e-4, 0.0),
-                              angle_look_ahead(&angle, 2.0).rev);
+                              takt_angle_look_ahead(&angle, 2.0).rev);
 }
 
 /* Counts of 1/100 at 1/137 a cycle: single readings say 0 or 0.01 a cycle. */

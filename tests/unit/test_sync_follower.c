@@ -18,9 +18,9 @@ static double most[3]; /* velocity, acceleration, jerk by differences, as ratios
 
 void setUp(void)
 {
-    follower_init(&follower, CYCLE_S);
-    follower_tune(&follower, 0.2);
-    follower_start(&follower, &limits);
+    takt_follower_init(&follower, CYCLE_S);
+    takt_follower_tune(&follower, 0.2);
+    takt_follower_start(&follower, &limits);
     memset(history, 0, sizeof(history));
     memset(most, 0, sizeof(most));
 }
@@ -29,7 +29,7 @@ void tearDown(void)
 {
 }
 
-static void judge(double x)
+static void verifier(double x)
 {
     memmove(history + 1, history, 3 * sizeof(double));
     history[0] = x;
@@ -45,8 +45,8 @@ static void judge(double x)
 
 static void step(const struct follower_target *target, const struct follower_end *end)
 {
-    follower_step(&follower, target, end);
-    judge(follower.at.x_mm);
+    takt_follower_step(&follower, target, end);
+    verifier(follower.at.x_mm);
 }
 
 static void check_limits(void)
@@ -101,7 +101,7 @@ static void test_an_end_is_come_to_rest_on_exactly(void)
 
         setUp();
         for (int i = 0; i < 20000 && !follower.rests; i++) {
-            target.v_mm_s = end.sense * (20.0 + 15.0 * maths_sin(0.01 * (i + n)));
+            target.v_mm_s = end.sense * (20.0 + 15.0 * takt_maths_sin(0.01 * (i + n)));
             target.x_mm += target.v_mm_s * CYCLE_S;
             step(&target, &end);
             TEST_ASSERT_TRUE(end.sense * follower.at.x_mm <= end.sense * end.x_mm + 1e-12);
@@ -122,9 +122,9 @@ static void test_braking_takes_the_least_time(void)
     struct brake_state s = {.x_mm = 2.0, .v_mm_s = 37.5};
     int cycles = 0;
 
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0 + 0.5 * 37.5 * 0.0575, brake_reach(&s, &limits));
-    brake_begin(&brake, &s, &limits);
-    while (!brake_step(&brake, CYCLE_S, &s)) {
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0 + 0.5 * 37.5 * 0.0575, takt_brake_reach(&s, &limits));
+    takt_brake_begin(&brake, &s, &limits);
+    while (!takt_brake_step(&brake, CYCLE_S, &s)) {
         cycles++;
     }
     TEST_ASSERT_EQUAL_INT(57, cycles);
@@ -136,15 +136,15 @@ static void test_braking_takes_the_least_time(void)
 static void test_braking_reaches_no_farther_than_was_said(void)
 {
     for (int n = 0; n < 2000; n++) {
-        const double a = 1000.0 * maths_sin(1.3 * n);
-        const double v = 90.0 * maths_sin(0.7 * n);
+        const double a = 1000.0 * takt_maths_sin(1.3 * n);
+        const double v = 90.0 * takt_maths_sin(0.7 * n);
         struct brake_state s = {.v_mm_s = v, .a_mm_s2 = a};
-        const double reach = brake_reach(&s, &limits);
+        const double reach = takt_brake_reach(&s, &limits);
         double farthest = 0.0;
         struct brake brake;
 
-        brake_begin(&brake, &s, &limits);
-        for (int i = 0; i < 1000 && !brake_step(&brake, CYCLE_S / 7.0, &s); i++) {
+        takt_brake_begin(&brake, &s, &limits);
+        for (int i = 0; i < 1000 && !takt_brake_step(&brake, CYCLE_S / 7.0, &s); i++) {
             farthest = maths_max(farthest, s.x_mm);
             TEST_ASSERT_TRUE(maths_abs(s.a_mm_s2) <= limits.acceleration_mm_s2 * (1 + 1e-9));
         }
@@ -162,7 +162,7 @@ static void test_asked_to_brake_it_rests_wherever_that_is(void)
         target.x_mm = 20.0 * CYCLE_S * i;
         step(&target, &nowhere);
     }
-    follower_brake(&follower);
+    takt_follower_brake(&follower);
     while (!follower.rests) {
         step(&target, &nowhere);
     }

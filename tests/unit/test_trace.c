@@ -128,7 +128,7 @@ static enum command_status limits_of(const double x[], unsigned count)
     struct machine machine;
     enum command_status status;
 
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     write_trace(path[0], x, count);
     TEST_ASSERT_TRUE(trace_reader_open(&reader, path[0]));
     status = trace_check_limits(&reader, &machine);
@@ -136,7 +136,7 @@ static enum command_status limits_of(const double x[], unsigned count)
     return status;
 }
 
-static void test_limits_are_judged_by_differences(void)
+static void test_limits_are_verified_by_differences(void)
 {
     const double slow[] = {100, 100.1, 100.2,
                            100.3}; /* 100 mm/s: at the limit, whatever came before */
@@ -182,7 +182,7 @@ int main(void)
     RUN_TEST(test_rows_have_the_columns_and_places_of_the_format);
     RUN_TEST(test_what_is_written_is_read_again);
     RUN_TEST(test_a_buffer_that_fills_up_loses_nothing);
-    RUN_TEST(test_limits_are_judged_by_differences);
+    RUN_TEST(test_limits_are_verified_by_differences);
     RUN_TEST(test_traces_are_equal_within_the_tolerance_alone);
     return UNITY_END();
 }

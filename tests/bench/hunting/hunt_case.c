@@ -49,7 +49,7 @@ double length_of(const double *v, unsigned from, unsigned to)
 }
 
 /* Point of a motion at a part of it: angle, radius and all other axes go evenly. */
-void place(const struct judge *j, const struct motion *m, double part, double *p)
+void place(const struct verifier *j, const struct motion *m, double part, double *p)
 {
     const double angle = m->angle_rad + part * m->sweep_rad;
     const double radius = m->radius_mm[0] + part * (m->radius_mm[1] - m->radius_mm[0]);
@@ -81,7 +81,7 @@ static void measure_arc(struct motion *m)
     m->radius_mm[1] = hypot(m->end[m->first] - m->centre[0], m->end[m->second] - m->centre[1]);
 }
 
-void measure_motion(const struct judge *j, struct motion *m)
+void measure_motion(const struct verifier *j, struct motion *m)
 {
     double way[AXES_MAX] = {0};
 
@@ -97,7 +97,7 @@ void measure_motion(const struct judge *j, struct motion *m)
     m->turning_rad = length_of(way, j->linear_axes, j->axes);
 }
 
-struct motion *add_motion(struct judge *j)
+struct motion *add_motion(struct verifier *j)
 {
     struct motion *m;
 
@@ -114,7 +114,7 @@ struct motion *add_motion(struct judge *j)
 }
 
 /* KIND LINE TOLERANCE TIME RAPID STOPS END..., arcs: FIRST SECOND CENTRE CENTRE SWEEP */
-static bool read_motion(struct judge *j, FILE *file)
+static bool read_motion(struct verifier *j, FILE *file)
 {
     char kind[2];
     struct motion *m;
@@ -137,7 +137,7 @@ static bool read_motion(struct judge *j, FILE *file)
 }
 
 /* AXES LINEAR CYCLE FEED_FACTOR COMPLETED, of each axis SCALE V A J START, then motions. */
-void read_case(struct judge *j, FILE *file)
+void read_case(struct verifier *j, FILE *file)
 {
     unsigned end;
 
@@ -160,7 +160,7 @@ void read_case(struct judge *j, FILE *file)
     }
 }
 
-static void add_piece(struct judge *j, size_t motion, double from, double to, double cut_mm)
+static void add_piece(struct verifier *j, size_t motion, double from, double to, double cut_mm)
 {
     const struct motion *m = &j->motion[motion];
     double end[AXES_MAX];
@@ -193,7 +193,7 @@ static void add_piece(struct judge *j, size_t motion, double from, double to, do
 }
 
 /* A chord of angle w is off its arc by r w^2 / 8. */
-void cut(struct judge *j)
+void cut(struct verifier *j)
 {
     for (size_t k = 0; k < j->motions; k++) {
         const struct motion *m = &j->motion[k];
@@ -224,7 +224,7 @@ static unsigned find_columns(char *head, bool *wanted, unsigned room)
     return found;
 }
 
-static void read_row(struct judge *j, char *line, const bool *wanted, double *row)
+static void read_row(struct verifier *j, char *line, const bool *wanted, double *row)
 {
     unsigned axis = 0, column = 0;
 
@@ -240,7 +240,7 @@ static void read_row(struct judge *j, char *line, const bool *wanted, double *ro
         fail("a row of the trace is too short");
 }
 
-double *add_row(struct judge *j)
+double *add_row(struct verifier *j)
 {
     if (j->axes == 0)
         fail("the case has no axis");
@@ -254,7 +254,7 @@ double *add_row(struct judge *j)
     return &j->setpoint[(j->rows - 1) * j->axes];
 }
 
-void read_trace(struct judge *j, FILE *file)
+void read_trace(struct verifier *j, FILE *file)
 {
     static char line[4096];
     bool wanted[64] = {false};
@@ -266,20 +266,20 @@ void read_trace(struct judge *j, FILE *file)
         read_row(j, line, wanted, add_row(j));
 }
 
-const double *row_of(const struct judge *j, size_t k)
+const double *row_of(const struct verifier *j, size_t k)
 {
     return &j->setpoint[(k < j->rows ? k : j->rows - 1) * j->axes];
 }
 
 /* From row k - 1 to row k. */
-void step_of(const struct judge *j, size_t k, double *step)
+void step_of(const struct verifier *j, size_t k, double *step)
 {
     for (unsigned i = 0; i < j->axes; i++)
         step[i] = row_of(j, k)[i] - row_of(j, k > 0 ? k - 1 : 0)[i];
 }
 
 /* |x(k+1) - 2 x(k) + x(k-1)|, standing still before and after. */
-void measure_bends(struct judge *j)
+void measure_bends(struct verifier *j)
 {
     j->bend = make(j->rows, sizeof *j->bend);
     for (size_t k = 0; k < j->rows; k++) {
@@ -292,7 +292,7 @@ void measure_bends(struct judge *j)
     }
 }
 
-void free_case(struct judge *j)
+void free_case(struct verifier *j)
 {
     free(j->motion);
     free(j->piece);

@@ -1,5 +1,5 @@
 /*
- * What the second judge judges: a programmed path, cut into straight pieces, and the setpoints of a trace.
+ * What the second verifier verifies: a programmed path, cut into straight pieces, and the setpoints of a trace.
  *
  * Lengths are over all axes, in mm, a radian counts as one.
  */
@@ -13,7 +13,7 @@
 
 #define AXES_MAX 6
 
-/* In exact paths the order is judged with so much room; distances from the curve are told to 1e-9 mm. */
+/* In exact paths the order is verified with so much room; distances from the curve are told to 1e-9 mm. */
 #define ORDER_MM 1e-7
 
 /* What rounding to the trace's nine decimals puts off one axis. */
@@ -46,7 +46,7 @@ struct span {
     double first, last; /* first > last: nothing */
 };
 
-struct judge {
+struct verifier {
     unsigned axes, linear_axes; /* X Y Z come first */
     double scale[AXES_MAX];     /* mm or rad per unit of the trace */
     double limit[AXES_MAX][3];  /* units of the trace */
@@ -73,21 +73,21 @@ void *make(size_t count, size_t size);
 void note(double *worst, unsigned *line, double value, unsigned where);
 double length_of(const double *v, unsigned from, unsigned to);
 /* Point of a motion at a part of it. */
-void place(const struct judge *j, const struct motion *m, double part, double *p);
+void place(const struct verifier *j, const struct motion *m, double part, double *p);
 /* Setpoint of a row; before the first and after the last the axes stand. */
-const double *row_of(const struct judge *j, size_t k);
-void step_of(const struct judge *j, size_t k, double *step);
+const double *row_of(const struct verifier *j, size_t k);
+void step_of(const struct verifier *j, size_t k, double *step);
 /* One more motion, which begins where the last one ends; the rest of it is to be set. */
-struct motion *add_motion(struct judge *j);
+struct motion *add_motion(struct verifier *j);
 /* Once it is set: what follows from it. */
-void measure_motion(const struct judge *j, struct motion *m);
+void measure_motion(const struct verifier *j, struct motion *m);
 /* One more setpoint, to be set; the first is where the program starts. */
-double *add_row(struct judge *j);
-void read_case(struct judge *j, FILE *file);
+double *add_row(struct verifier *j);
+void read_case(struct verifier *j, FILE *file);
 /* The motions, into pieces. */
-void cut(struct judge *j);
-void read_trace(struct judge *j, FILE *file);
-void measure_bends(struct judge *j);
-void free_case(struct judge *j);
+void cut(struct verifier *j);
+void read_trace(struct verifier *j, FILE *file);
+void measure_bends(struct verifier *j);
+void free_case(struct verifier *j);
 
 #endif

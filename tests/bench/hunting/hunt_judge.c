@@ -1,5 +1,5 @@
 /*
- * A second judge of setpoints, for `hunt`: it shares no code with the controller or with takt's own judge.
+ * A second verifier of setpoints, for `hunt`: it shares no code with the controller or with takt's own verifier.
  *
  *     hunt_judge CASE TRACE.csv [WORK]        CASE: written by hunt, see read_case; -: standard input
  *
@@ -11,10 +11,10 @@
  *
  * Tolerance of a place: P of its motion, or ORDER_MM where it must be exact (how exact is measured apart, from the true
  * curve), and what a piece is off its arc. Between two setpoints the axes do not go straight: with second differences d a
- * curve is off its chord by d / 8, a joint passed in an exact path by half a step at most; ends of motions may be off a step by
+ * curve is off its chord by d / 8, a junction passed in an exact path by half a step at most; ends of motions may be off a step by
  * that.
  *
- * What takes more than so much WORK (pieces looked at beside a step) is not judged, and told: unjudged.
+ * What takes more than so much WORK (pieces looked at beside a step) is not verified, and told: unjudged.
  *
  * Lengths are over all axes, in mm, a radian counts as one. Figures are printed, a line each: NAME VALUE [PLACE].
  */
@@ -31,7 +31,7 @@
 #define TOLERANCE_ROOM 1e-6
 
 /* Largest of v, a, j by differences as parts of the limits, less what rounding of the trace can do. */
-static void judge_limits(const struct judge *j)
+static void verifier_limits(const struct verifier *j)
 {
     static const char *const names[] = {"velocity", "acceleration", "jerk"};
     static const double weights[] = {2, 4, 8};
@@ -65,13 +65,13 @@ static void judge_limits(const struct judge *j)
 static double segment_distance(unsigned axes, const double *start, const double *way,
                                double square_mm2, const double *p)
 {
-    double foot = 0, square = 0;
+    double closest = 0, square = 0;
 
     for (unsigned i = 0; i < axes; i++)
-        foot += (p[i] - start[i]) * way[i];
-    foot = square_mm2 > 0 ? fmin(fmax(foot / square_mm2, 0), 1) : 0;
+        closest += (p[i] - start[i]) * way[i];
+    closest = square_mm2 > 0 ? fmin(fmax(closest / square_mm2, 0), 1) : 0;
     for (unsigned i = 0; i < axes; i++) {
-        const double off = p[i] - start[i] - foot * way[i];
+        const double off = p[i] - start[i] - closest * way[i];
 
         square += off * off;
     }
@@ -79,7 +79,7 @@ static double segment_distance(unsigned axes, const double *start, const double 
 }
 
 /* Most that a setpoint is off all of the path, whatever the order, as a part of the tolerance of the nearest piece. */
-static void judge_tube(struct judge *j)
+static void verifier_tube(struct verifier *j)
 {
     double worst = 0;
     size_t where = 0;
@@ -104,7 +104,7 @@ static void judge_tube(struct judge *j)
 }
 
 /* Most that an end of a motion is off all steps, likewise. */
-static void judge_corners(struct judge *j)
+static void verifier_corners(struct verifier *j)
 {
     double worst = 0;
     unsigned line = 0;
@@ -128,7 +128,7 @@ static void judge_corners(struct judge *j)
     printf("corner %.6g %u\n", worst, line);
 }
 
-static void judge_travel(const struct judge *j)
+static void verifier_travel(const struct verifier *j)
 {
     double programmed_mm = 0, travelled_mm = 0, off[AXES_MAX];
     const double *end = j->motions > 0 ? j->motion[j->motions - 1].end : j->start;
@@ -148,7 +148,7 @@ static void judge_travel(const struct judge *j)
 }
 
 /* How far from one is it, and where? Each of these may be so much work. */
-static double judge_disorder(struct judge *j, const struct walk *w)
+static double verifier_disorder(struct verifier *j, const struct walk *w)
 {
     double factor;
 
@@ -156,13 +156,13 @@ static double judge_disorder(struct judge *j, const struct walk *w)
     factor = least_factor(j);
     printf("order %.6g %zu\n", factor, w->lost_row > 0 ? w->lost_row - 1 : j->rows - 1);
     j->work = 0;
-    judge_tube(j);
-    judge_corners(j);
+    verifier_tube(j);
+    verifier_corners(j);
     j->work = 0;
     return factor;
 }
 
-static void judge_path(struct judge *j)
+static void verifier_path(struct verifier *j)
 {
     double *before = make(j->motions + 1, sizeof *before);
     const double factor = 1 + TOLERANCE_ROOM;
@@ -177,7 +177,7 @@ static void judge_path(struct judge *j)
     } else if (w.arrived) {
         printf("order 1\n");
     } else {
-        w = walk_along(j, judge_disorder(j, &w), true, before);
+        w = walk_along(j, verifier_disorder(j, &w), true, before);
     }
     printf("back %.6g %u\n", w.back_part, w.back_line);
     printf("exact %.6g %u\n", w.off_mm, w.off_line);
@@ -198,7 +198,7 @@ static FILE *open_file(const char *name)
 
 int main(int count, char **word)
 {
-    struct judge j = {.work_most = WORK_MOST};
+    struct verifier j = {.work_most = WORK_MOST};
     FILE *file;
 
     if (count != 3 && count != 4)
@@ -213,10 +213,10 @@ int main(int count, char **word)
     (void)fclose(file);
     cut(&j);
     measure_bends(&j);
-    judge_limits(&j);
-    judge_travel(&j);
+    verifier_limits(&j);
+    verifier_travel(&j);
     if (j.pieces > 0)
-        judge_path(&j);
+        verifier_path(&j);
     free_case(&j);
     return 0;
 }

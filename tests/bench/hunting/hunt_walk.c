@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Feed is compared over so many cycles. */
+/* Feed is compared over each of these numbers of cycles. */
 static const size_t windows[] = {1, 16, 256};
 #define WINDOWS (sizeof windows / sizeof windows[0])
 
@@ -21,13 +21,13 @@ static const struct span nowhere = {2, -1};
 static struct span near(unsigned axes, const double *start, const double *way, double square_mm2,
                         const double *p, double within_mm)
 {
-    double foot = 0, square = 0, half;
+    double closest = 0, square = 0, half;
 
     for (unsigned i = 0; i < axes; i++)
-        foot += (p[i] - start[i]) * way[i];
-    foot = square_mm2 > 0 ? foot / square_mm2 : 0;
+        closest += (p[i] - start[i]) * way[i];
+    closest = square_mm2 > 0 ? closest / square_mm2 : 0;
     for (unsigned i = 0; i < axes; i++) {
-        const double off = p[i] - start[i] - foot * way[i];
+        const double off = p[i] - start[i] - closest * way[i];
 
         square += off * off;
     }
@@ -36,7 +36,7 @@ static struct span near(unsigned axes, const double *start, const double *way, d
     if (square_mm2 <= 0)
         return (struct span){0, 1};
     half = sqrt((within_mm * within_mm - square) / square_mm2);
-    return (struct span){fmax(foot - half, 0), fmin(foot + half, 1)};
+    return (struct span){fmax(closest - half, 0), fmin(closest + half, 1)};
 }
 
 static bool is_there(struct span s)
@@ -50,7 +50,7 @@ static struct span from_on(struct span s, double first)
 }
 
 /* The longer one of the steps before and after that to row k. */
-static double beside_step(const struct judge *j, size_t k)
+static double beside_step(const struct verifier *j, size_t k)
 {
     double before[AXES_MAX], after[AXES_MAX];
 
@@ -62,9 +62,9 @@ static double beside_step(const struct judge *j, size_t k)
 /*
  * How far the end of a piece may be from step k (from row k - 1 to row k). On an exact path it is gone through on the way from
  * one setpoint to the next: half of that way from the nearer one at most. As long as that are the steps beside it; or there, where
- * one joint alone is passed, differ so much.
+ * one junction alone is passed, differ so much.
  */
-static double end_within(const struct judge *j, size_t piece, size_t k, double factor)
+static double end_within(const struct verifier *j, size_t piece, size_t k, double factor)
 {
     const struct piece *p = &j->piece[piece];
     const struct motion *m = &j->motion[p->motion];
@@ -81,7 +81,7 @@ static double end_within(const struct judge *j, size_t piece, size_t k, double f
 }
 
 /* Most that the step goes along any of the pieces it may be on. */
-static void go_along(const struct judge *j, struct walk *w, size_t piece, const double *step)
+static void go_along(const struct verifier *j, struct walk *w, size_t piece, const double *step)
 {
     const struct piece *p = &j->piece[piece];
     double along = 0;
@@ -95,13 +95,13 @@ static void go_along(const struct judge *j, struct walk *w, size_t piece, const 
         w->first = piece;
 }
 
-static const double *end_of(const struct judge *j, size_t piece)
+static const double *end_of(const struct verifier *j, size_t piece)
 {
     return piece + 1 < j->pieces ? j->piece[piece + 1].start : j->motion[j->motions - 1].end;
 }
 
 /* One step, from row k - 1 to row k: the places that its end may be at. False: there is none. */
-static bool advance(struct judge *j, struct walk *w, size_t k, double factor, size_t *low,
+static bool advance(struct verifier *j, struct walk *w, size_t k, double factor, size_t *low,
                     size_t *high)
 {
     const double *from = row_of(j, k > 0 ? k - 1 : 0), *to = row_of(j, k);
@@ -140,7 +140,7 @@ static bool advance(struct judge *j, struct walk *w, size_t k, double factor, si
 }
 
 /* The part of the motion at which the setpoint lies across it; steps along the tangent. */
-static double curve_distance(const struct judge *j, const struct piece *p, struct span reach,
+static double curve_distance(const struct verifier *j, const struct piece *p, struct span reach,
                              const double *x)
 {
     const struct motion *m = &j->motion[p->motion];
@@ -167,7 +167,7 @@ static double curve_distance(const struct judge *j, const struct piece *p, struc
     return least;
 }
 
-static double time_at(const struct judge *j, size_t piece, double part, const double *before)
+static double time_at(const struct verifier *j, size_t piece, double part, const double *before)
 {
     const struct piece *p = &j->piece[piece];
 
@@ -175,7 +175,7 @@ static double time_at(const struct judge *j, size_t piece, double part, const do
 }
 
 /* Faster than programmed? In exact path by the time that the way would have taken: what a tolerance cuts off is no haste. */
-static void judge_exact_feed(const struct judge *j, struct walk *w, size_t k, unsigned line)
+static void verifier_exact_feed(const struct verifier *j, struct walk *w, size_t k, unsigned line)
 {
     for (size_t i = 0; i < WINDOWS; i++) {
         const size_t n = windows[i];
@@ -192,7 +192,7 @@ static void judge_exact_feed(const struct judge *j, struct walk *w, size_t k, un
  * kind counts, X Y Z, or A B C of motions of those alone, as time_s does. What rounding moves the others by, on the way to a
  * motion of theirs, is bounded by the tolerance, and is no part of F.
  */
-static void judge_feed(const struct judge *j, struct walk *w, size_t k)
+static void verifier_feed(const struct verifier *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX], most = 0;
     bool linear = true, turning = true;
@@ -217,7 +217,7 @@ static void judge_feed(const struct judge *j, struct walk *w, size_t k)
          j->motion[j->piece[w->first].motion].line);
 }
 
-static bool has_rounded(const struct judge *j, const struct walk *w)
+static bool has_rounded(const struct verifier *j, const struct walk *w)
 {
     for (size_t n = w->first; n <= w->last; n++) {
         if (j->motion[j->piece[n].motion].tolerance_mm > 0)
@@ -227,7 +227,7 @@ static bool has_rounded(const struct judge *j, const struct walk *w)
 }
 
 /* Sum of |t_k - t_k-1|, t the tangents of pieces, from one to another. */
-static double turn_between(const struct judge *j, size_t from, size_t to)
+static double turn_between(const struct verifier *j, size_t from, size_t to)
 {
     double turn = 0;
 
@@ -251,7 +251,7 @@ static double turn_between(const struct judge *j, size_t from, size_t to)
  *
  * So what a curve may go back by is what the path turns by meanwhile, and 2.
  */
-static void judge_back(const struct judge *j, struct walk *w, size_t k)
+static void verifier_back(const struct verifier *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX];
 
@@ -268,14 +268,14 @@ static void judge_back(const struct judge *j, struct walk *w, size_t k)
              j->motion[j->piece[w->first].motion].line);
 }
 
-/* Of a piece that is touched, but left, nothing. */
+/* The part of a piece; nothing of one that is touched, but left. */
 static double part_of(double part)
 {
     return part >= 0 && part <= 1 ? part : 0;
 }
 
 /* Does the path go on smoothly some way before and after the pieces touched, with no stop there? */
-static bool is_smooth(const struct judge *j, const struct walk *w)
+static bool is_smooth(const struct verifier *j, const struct walk *w)
 {
     const bool rounded = has_rounded(j, w);
     const double cosine = rounded ? SMOOTH_COSINE : EXACT_COSINE;
@@ -309,7 +309,7 @@ static bool is_smooth(const struct judge *j, const struct walk *w)
     return true;
 }
 
-static void judge_standing(const struct judge *j, struct walk *w, size_t k)
+static void verifier_standing(const struct verifier *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX];
 
@@ -322,8 +322,8 @@ static void judge_standing(const struct judge *j, struct walk *w, size_t k)
         w->stop_line = j->motion[j->piece[w->first].motion].line;
 }
 
-static void judge_exact(const struct judge *j, struct walk *w, size_t k, size_t low, size_t high,
-                        const double *before)
+static void verifier_exact(const struct verifier *j, struct walk *w, size_t k, size_t low,
+                           size_t high, const double *before)
 {
     double least = (double)INFINITY;
     const unsigned line = j->motion[j->piece[low].motion].line;
@@ -336,16 +336,16 @@ static void judge_exact(const struct judge *j, struct walk *w, size_t k, size_t 
     w->exact_rows++;
     w->time_s[0][k] = time_at(j, low, j->reach[low].first, before);
     w->time_s[1][k] = time_at(j, high, j->reach[high].last, before);
-    judge_exact_feed(j, w, k, line);
+    verifier_exact_feed(j, w, k, line);
 }
 
 /* Does the last row lead on to where the path must end? */
-static bool is_done(const struct judge *j, size_t high)
+static bool is_done(const struct verifier *j, size_t high)
 {
     return !j->completed || (high + 1 == j->pieces && j->reach[high].last >= 1);
 }
 
-struct walk walk_along(struct judge *j, double factor, bool closely, const double *before)
+struct walk walk_along(struct verifier *j, double factor, bool closely, const double *before)
 {
     struct walk w = {0};
     size_t low = 0, high = 0;
@@ -366,14 +366,14 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
         if (!closely)
             continue;
         if (!has_rounded(j, &w))
-            judge_exact(j, &w, k, low, high, before);
+            verifier_exact(j, &w, k, low, high, before);
         else
             w.exact_rows = 0;
         if (w.exact_rows == 0 && k > 0)
-            judge_feed(j, &w, k);
+            verifier_feed(j, &w, k);
         if (k > 0) {
-            judge_back(j, &w, k);
-            judge_standing(j, &w, k);
+            verifier_back(j, &w, k);
+            verifier_standing(j, &w, k);
         }
         w.arrived = k + 1 == j->rows && is_done(j, high);
     }
@@ -384,7 +384,7 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
     return w;
 }
 
-double least_factor(struct judge *j)
+double least_factor(struct verifier *j)
 {
     double low = 1, high = 1.1;
 

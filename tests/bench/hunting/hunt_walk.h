@@ -29,8 +29,8 @@ struct walk {
 };
 
 /* One pass with this factor on all tolerances. closely: measures what the places passed say, too. */
-struct walk walk_along(struct judge *j, double factor, bool closely, const double *before);
+struct walk walk_along(struct verifier *j, double factor, bool closely, const double *before);
 /* Smallest factor on all tolerances with which there is a way; to 0.1 %. Where that is too much work: one that it exceeds. */
-double least_factor(struct judge *j);
+double least_factor(struct verifier *j);
 
 #endif

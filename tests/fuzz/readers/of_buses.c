@@ -137,10 +137,10 @@ static void open_master(struct drives *drives)
     for (unsigned i = 0; i < DRIVES; i++)
         config.axis[i] = (struct drives_config_axis){
             .axis = (enum axis)i, .node = (uint8_t)(i + 1), .increments_per_mm = 1e5};
-    drives_init(drives, &config);
+    takt_drives_init(drives, &config);
 }
 
-/* Of the frames of a cycle the first is the one that says how many cycles come before it. */
+/* The first of the frames of a cycle is the one that says how many cycles come before it. */
 static bool receive_next(void *context, struct can_frame *frame)
 {
     struct frames *frames = context;
@@ -163,9 +163,9 @@ void read_frames_of_drives(const uint8_t *data, size_t size)
     open_master(&drives);
     while (frames.size >= 3) {
         before = drives_get_state(&drives);
-        drives_receive(&drives, &port);
-        drives_sync(&drives, &port);
-        drives_send(&drives, &port, &setpoint);
+        takt_drives_receive(&drives, &port);
+        takt_drives_sync(&drives, &port);
+        takt_drives_send(&drives, &port, &setpoint);
         require(drives_get_state(&drives) >= before);
         frames.cycles -= frames.cycles > 0;
     }

@@ -4,8 +4,8 @@
 #include "readers.h"
 
 #include "base/maths.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "dialect/dialect.h"
-#include "offset/offset.h"
 #include "program/program.h"
 #include "session/convert.h"
 
@@ -15,7 +15,7 @@
 #define TRAVEL_MM  500.0
 #define MOVES_MAX  300
 #define ERRORS_MAX 300
-/* After so many bytes the source fails: of loops that move nothing. */
+/* After this many bytes the source fails, in loops that move nothing. */
 #define READ_MAX 50000U
 
 static const struct tool tools[] = {
@@ -76,7 +76,7 @@ static void write_move(struct convert *c, const struct move *move)
 }
 
 static struct program program;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct parameters parameters;
 
 static void open_program(const struct source *source, struct program_config *config)
@@ -91,9 +91,9 @@ static void open_program(const struct source *source, struct program_config *con
         config->travel_min[axis] = -TRAVEL_MM;
         config->travel_max[axis] = TRAVEL_MM;
     }
-    parameters_clear(&parameters);
-    program_open(&program, config, source);
-    offset_open(&offset, config);
+    takt_parameters_clear(&parameters);
+    takt_program_open(&program, config, source);
+    takt_cutter_compensation_open(&offset, config);
 }
 
 static void write_moves(struct convert *convert)
@@ -105,7 +105,8 @@ static void write_moves(struct convert *convert)
     unsigned errors = 0;
 
     while (moves < MOVES_MAX && errors < ERRORS_MAX &&
-           (result = offset_next(&offset, &program, &move, &error)) != PROGRAM_END) {
+           (result = takt_cutter_compensation_next(&offset, &program, &move, &error)) !=
+               PROGRAM_END) {
         require(result != PROGRAM_WAIT);
         if (result == PROGRAM_ERROR) {
             errors++;
@@ -128,7 +129,7 @@ static void read_moves(const char *bytes, size_t length, enum dialect to)
     FILE *out = open_memstream(&written, &size);
 
     require(out != NULL);
-    source_open_text(&text.source, &text.text, bytes, length);
+    takt_source_open_text(&text.source, &text.text, bytes, length);
     open_program(&source, &config);
     convert_open(&convert, out, to, config.axes, &config.start);
     write_moves(&convert);

@@ -75,14 +75,14 @@ static void seal_plan(size_t length)
                                     .sections = bytes()[4],
                                     .intervals = bytes()[5],
                                     .kept = 0.99};
-    replay_header_write(&header, bytes());
+    takt_replay_header_write(&header, bytes());
     while (at + REPLAY_RECORD_HEAD + REPLAY_RECORD_TAIL <= length) {
-        const size_t whole = REPLAY_RECORD_HEAD + (size_t)replay_get(bytes() + at + 1, 2);
+        const size_t whole = REPLAY_RECORD_HEAD + (size_t)takt_replay_get(bytes() + at + 1, 2);
 
         if (at + whole + REPLAY_RECORD_TAIL > length)
             return;
-        crc = crc32_add(crc, bytes() + at, whole);
-        replay_put(bytes() + at + whole, crc, REPLAY_RECORD_TAIL);
+        crc = takt_crc32_add(crc, bytes() + at, whole);
+        takt_replay_put(bytes() + at + whole, crc, REPLAY_RECORD_TAIL);
         at += whole + REPLAY_RECORD_TAIL;
     }
 }
@@ -103,13 +103,13 @@ static void open_path(void)
         limits.acceleration_mm_s2[i] = 1000;
         limits.jerk_mm_s3[i] = 50000;
     }
-    path_init(&path, &limits, &start);
-    motion_init(&motion, &path, &start, false);
-    handover_allow_all(&motion);
-    path_push(&path, &line);
-    path_finish(&path);
-    path_go_on(&path);
-    motion_build(&motion);
+    takt_path_init(&path, &limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
+    takt_handover_allow_all(&motion);
+    takt_path_push(&path, &line);
+    takt_path_finish(&path);
+    takt_path_go_on(&path);
+    takt_motion_build(&motion);
 }
 
 /* A compiled program, replayed beside a path of one line. */
@@ -127,18 +127,19 @@ void read_plan(const uint8_t *data, size_t size)
     if (data[0] & 1U)
         seal_plan(stream.length);
     open_path();
-    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
     for (unsigned i = 0; i < CYCLES; i++) {
-        replay_read(&replay, &limits);
-        if (motion_cycle(&motion, &as_programmed, &record) == MOTION_HANDED_OVER &&
-            replay_cycle(&replay, &motion, &as_programmed, &record) == REPLAY_FAILED)
+        takt_replay_read(&replay, &limits);
+        if (takt_motion_cycle(&motion, &as_programmed, &record) == MOTION_HANDED_OVER &&
+            takt_replay_cycle(&replay, &motion, &as_programmed, &record) == REPLAY_FAILED)
             return;
     }
 }
 
 static void seal_settings(size_t length)
 {
-    const uint32_t words[] = {(uint32_t)length, crc32_add(CRC32_START, bytes() + 12, length - 12)};
+    const uint32_t words[] = {(uint32_t)length,
+                              takt_crc32_add(CRC32_START, bytes() + 12, length - 12)};
 
     memcpy(bytes(), "TKM1", 4);
     memcpy(bytes() + 4, words, sizeof words);
@@ -159,8 +160,8 @@ void read_settings(const uint8_t *data, size_t size)
     length = take_bytes(data + 1, size - 1);
     if ((data[0] & 1U) && length >= 16)
         seal_settings(length);
-    if (settings_read(bytes(), length, &machine, &tables, dcf, &wrong))
-        (void)settings_check_share(&machine, &tables, &scratch, &wrong);
+    if (takt_settings_read(bytes(), length, &machine, &tables, dcf, &wrong))
+        (void)takt_settings_check_share(&machine, &tables, &scratch, &wrong);
 }
 
 static bool send_nowhere(void *context, const struct can_frame *frame)
@@ -177,12 +178,12 @@ void read_configuration(const uint8_t *data, size_t size)
     uint32_t at = CONCISE_DCF_FIRST, object, count = 0;
     struct concise_dcf_entry entry;
 
-    if (!concise_dcf_is_well(&dcf, &object))
+    if (!takt_concise_dcf_is_well(&dcf, &object))
         return;
-    while (concise_dcf_next(&dcf, &at, &entry)) {
+    while (takt_concise_dcf_next(&dcf, &at, &entry)) {
         require(entry.size > 0 && entry.size <= SDO_CLIENT_VALUE_MAX &&
                 entry.value + entry.size <= data + size);
-        (void)concise_dcf_has(&dcf, at, entry.object);
+        (void)takt_concise_dcf_has(&dcf, at, entry.object);
         count++;
     }
     require(at == size &&
@@ -247,14 +248,14 @@ void read_flash(const uint8_t *data, size_t size)
 
     memset(memory, 0xFF, FLASH_BYTES);
     (void)take_bytes(data, size < FLASH_BYTES ? size : FLASH_BYTES);
-    store_open(&store, &port);
-    if (store_get(&store, &found, &length))
-        require(length <= store_room(&store) && found >= bytes() &&
+    takt_store_open(&store, &port);
+    if (takt_store_get(&store, &found, &length))
+        require(length <= takt_store_room(&store) && found >= bytes() &&
                 found + length <= bytes() + FLASH_BYTES);
-    require(store_begin(&store, sizeof set) && store_write(&store, set, sizeof set) &&
-            store_commit(&store));
-    store_open(&store, &port);
-    require(store_get(&store, &found, &length) && length == sizeof set &&
+    require(takt_store_begin(&store, sizeof set) && takt_store_write(&store, set, sizeof set) &&
+            takt_store_commit(&store));
+    takt_store_open(&store, &port);
+    require(takt_store_get(&store, &found, &length) && length == sizeof set &&
             memcmp(found, set, length) == 0);
 }
 

@@ -74,11 +74,11 @@ int main(void)
     };
     const struct inputs inputs = inputs_idle();
 
-    machine_set_default(&machine);
-    embedded_init(&embedded, &config);
+    takt_machine_set_default(&machine);
+    takt_embedded_init(&embedded, &config);
     for (unsigned i = 0; i < CYCLES_MAX; i++) {
-        embedded_background(&embedded);
-        embedded_cycle(&embedded, &inputs, false);
+        takt_embedded_background(&embedded);
+        takt_embedded_cycle(&embedded, &inputs, false);
         now_us_count += machine.cycle_us;
     }
     printf("%lu frames\n", frames);

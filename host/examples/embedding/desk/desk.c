@@ -56,7 +56,7 @@ static bool bus_receive(void *context, struct can_frame *frame)
 
 static void make_machine(struct machine *machine)
 {
-    machine_set_default(machine);
+    takt_machine_set_default(machine);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         machine->axis[i].drive_type = MACHINE_DRIVE_STEP;
         machine->axis[i].steps_per_mm = STEPS_PER_MM;
@@ -85,9 +85,9 @@ static void open_desk(struct desk *desk)
     };
 
     make_machine(&desk->machine);
-    parameters_clear(&desk->parameters);
-    source_open_text(&config.source, &desk->text, part, strlen(part));
-    controller_init(&desk->controller, &config);
+    takt_parameters_clear(&desk->parameters);
+    takt_source_open_text(&config.source, &desk->text, part, strlen(part));
+    takt_controller_init(&desk->controller, &config);
 }
 
 static enum controller_state run(struct controller *controller)
@@ -95,12 +95,12 @@ static enum controller_state run(struct controller *controller)
     const struct inputs inputs = inputs_idle();
 
     for (unsigned long i = 0; i < CYCLES_MAX; i++) {
-        if (controller_get_state(controller) >= CONTROLLER_COMPLETED)
+        if (takt_controller_get_state(controller) >= CONTROLLER_COMPLETED)
             break;
-        controller_background(controller);     /* reads and plans ahead */
-        controller_cycle(controller, &inputs); /* pulses of one cycle */
+        takt_controller_background(controller);     /* reads and plans ahead */
+        takt_controller_cycle(controller, &inputs); /* pulses of one cycle */
     }
-    return controller_get_state(controller);
+    return takt_controller_get_state(controller);
 }
 
 /* Where the part ends. */
@@ -124,7 +124,7 @@ int main(void)
     if (run(&desk->controller) == CONTROLLER_COMPLETED) {
         good = stands_right(&desk->motors);
     } else {
-        (void)diagnostic_text(controller_get_fault(&desk->controller), fault);
+        (void)takt_diagnostic_text(takt_controller_get_fault(&desk->controller), fault);
         puts(fault);
     }
     free(desk);

@@ -2,7 +2,7 @@
  * A board of your own: a timer for the control cycle, a serial line for the log, pulses for step drives. What your board does
  * otherwise stands in the functions of `the board`; port/embedded.h says what each of them is to do.
  *
- *     SysTick -> embedded_cycle -> pulse          main -> embedded_background -> write_log
+ *     SysTick -> takt_embedded_cycle -> pulse          main -> takt_embedded_background -> write_log
  */
 #include "port/cortex_m.h"
 #include "port/startup.h"
@@ -89,19 +89,19 @@ static bool bus_receive(void *context, struct can_frame *frame)
 }
 
 /* The control cycle. */
-void port_systick(void)
+void takt_port_systick(void)
 {
     const struct inputs inputs = inputs_idle();
 
     board.cycles++;
-    embedded_cycle(&board.embedded, &inputs, false);
+    takt_embedded_cycle(&board.embedded, &inputs, false);
 }
 
 /* ---- start ---- */
 
 static void make_machine(struct machine *machine)
 {
-    machine_set_default(machine);
+    takt_machine_set_default(machine);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         machine->axis[i].drive_type = MACHINE_DRIVE_STEP;
         machine->axis[i].steps_per_mm = 400;
@@ -130,7 +130,7 @@ static void open_embedded(void)
     };
 
     make_machine(&board.machine);
-    embedded_init(&board.embedded, &config);
+    takt_embedded_init(&board.embedded, &config);
 }
 
 int main(void)
@@ -143,7 +143,7 @@ int main(void)
     CORTEX_SYSTICK_VALUE = 0;
     CORTEX_SYSTICK_CONTROL = CORTEX_SYSTICK_ON | CORTEX_SYSTICK_INTERRUPT | CORTEX_SYSTICK_CORE;
     for (;;) {
-        embedded_background(&board.embedded);
+        takt_embedded_background(&board.embedded);
         cortex_sleep();
     }
 }

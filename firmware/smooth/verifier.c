@@ -1,0 +1,545 @@
+#include "smooth/verifier.h"
+
+#include "smooth/single.h"
+
+#include <stddef.h>
+
+/* Rounding of limits. */
+#define LIMIT 0.999f
+
+/* Rounding of feeds that are the same. */
+#define SAME 0.99999f
+
+/* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
+#define LEFT_LEAST 0.06
+#define LEFT_MOST  0.5
+
+/* Part of the pieces before the trapezoidal reference that are known on the average: README.md. */
+#define KNOWN_PART 0.7
+
+/* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
+#define ROUNDING_PART 0.3
+#define TURNING_PART  0.4f
+
+/* Where the axes nearly stand, nothing else bounds the rate. */
+#define RATE_MAX 4.0f
+
+/* Changes of rate are not rounded over more cycles than these. */
+#define ROUNDING_CYCLES_MAX 64.0
+
+/* The places looked at are within this part of the tolerance, or less: within_of(). */
+#define JUDGED 0.985f
+
+/* A rate does not change faster than this times what it may change by on every piece. */
+#define CHANGE_MOST 64.0f
+
+/* Places looked at in a piece, at most. */
+#define PLACES_MAX 8
+
+/*
+ * Need of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8
+ * at most. square: of the first derivative, over the linear axes and over the others.
+ */
+static void need_of_group(const struct window *w, const struct route *r, unsigned group,
+                          unsigned piece, struct verifier_need *need, float square[2])
+{
+    const lanes_int *c = w->x + (size_t)group * w->capacity + piece;
+    const lanes_int step0 = c[1] - c[0];
+    const lanes_int step1 = c[2] - c[1];
+    const lanes_int step2 = c[3] - c[2];
+    const lanes twist = lanes_size(lanes_of(step2 - 2 * step1 + step0));
+    const lanes way =
+        lanes_max(lanes_size(lanes_of(step0 + step1)), lanes_size(lanes_of(step1 + step2)));
+    const lanes bend =
+        lanes_max(lanes_size(lanes_of(step1 - step0)), lanes_size(lanes_of(step2 - step1)));
+    const lanes most = 0.5f * way + twist / 8.0f;
+    const float per_s = 1.0f / (float)w->interval_s;
+
+    for (unsigned k = 0, i = group * SMOOTH_LANES; k < SMOOTH_LANES && i < r->slots.count;
+         k++, i++) {
+        const float first = (float)w->unit_mm[i] * per_s;
+
+        need->first[i] = most[k] * first;
+        need->second[i] = bend[k] * first * per_s;
+        need->third[i] = twist[k] * first * per_s * per_s;
+        square[r->slots.axis[i] < AXIS_LINEAR_COUNT ? 0 : 1] += need->first[i] * need->first[i];
+    }
+}
+
+void takt_verifier_need(const struct window *w, const struct route *r, unsigned piece,
+                        struct verifier_need *need)
+{
+    float square[2] = {0.0f, 0.0f};
+
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        need_of_group(w, r, g, piece, need, square);
+    }
+    need->linear_mm_s = single_sqrt(square[0]);
+    need->rotary_mm_s = single_sqrt(square[1]);
+}
+
+float takt_verifier_programmed(const struct verifier_need *need, const struct route *r,
+                               uint32_t element)
+{
+    const float feed = route_element(r, element)->rotary ? need->rotary_mm_s : need->linear_mm_s;
+
+    return feed > 0.0f ? route_programmed(r, element) / feed : SINGLE_INFINITY;
+}
+
+/* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
+static double reached(const struct smooth_limits *limits, int axis)
+{
+    return maths_min(limits->acceleration_mm_s2[axis],
+                     maths_sqrt(limits->velocity_mm_s[axis] * limits->jerk_mm_s3[axis]));
+}
+
+/*
+ * The trapezoidal reference comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
+ * slow before the end of what is known, over and over.
+ */
+static double change_of_axis_at_rest(const struct smooth_limits *limits, double interval_s,
+                                     int axis)
+{
+    const double most = reached(limits, axis) / limits->velocity_mm_s[axis];
+    const double needed = 1.0 / (2.0 * KNOWN_PART * SMOOTH_AHEAD_PIECES * interval_s);
+
+    return maths_clamp(needed, LEFT_LEAST * most, LEFT_MOST * most);
+}
+
+/*
+ * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
+ * slower that no axis needs more than its part of the jerk for it: V r'/R <= part J.
+ */
+void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
+                          struct verifier_change *change)
+{
+    double rounding_s = limits->cycle_s;
+    double most = MATHS_INFINITY;
+
+    change->by = MATHS_INFINITY;
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            const double ramp_s = reached(limits, i) / limits->jerk_mm_s3[i];
+
+            change->by = maths_min(change->by, change_of_axis_at_rest(limits, interval_s, i));
+            rounding_s = maths_max(rounding_s, ramp_s);
+            most =
+                maths_min(most, ROUNDING_PART * limits->jerk_mm_s3[i] / limits->velocity_mm_s[i]);
+        }
+    }
+    change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
+    if (change->rounding_s < rounding_s) {
+        change->by = maths_min(change->by, most * change->rounding_s);
+    }
+    change->rounded = change->by / change->rounding_s;
+}
+
+/*
+ * The highest rate r of one axis that may still change by r' and r'':
+ *     velocity      x' r                             <= V
+ *     acceleration  x' r' + x'' r^2                  <= A
+ *     jerk          x' r'' + 3 x'' r r' + x''' r^3   <= J
+ * Each of the jerk's terms has a part for itself: a curve that needed all of it for one could not be gone along.
+ */
+static float most_of_axis(const struct verifier_need *need, const struct route_slots *slots,
+                          const struct verifier_change *change, unsigned i, float most)
+{
+    const float first = need->first[i];
+    const float second = need->second[i];
+    const float third = need->third[i];
+    const float by = (float)change->by;
+
+    if (first * most > slots->velocity_mm_s[i]) {
+        most = slots->velocity_mm_s[i] / first;
+    }
+    const float a = single_max(0.0f, LIMIT * slots->acceleration_mm_s2[i] - first * by);
+
+    if (second * most * most > a) {
+        most = single_sqrt(a / second);
+    }
+    const float turning = TURNING_PART * slots->jerk_mm_s3[i];
+
+    if (3.0f * second * most * by > turning) {
+        most = turning / (3.0f * second * by);
+    }
+    const float j = single_max(0.0f, LIMIT * slots->jerk_mm_s3[i] - first * (float)change->rounded -
+                                         3.0f * second * most * by);
+
+    return third * most * most * most > j ? takt_single_cbrt(j / third) : most;
+}
+
+void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,
+                        const struct verifier_change *change, struct verifier_rate *rate)
+{
+    rate->most = RATE_MAX;
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
+    }
+    rate->programmed = takt_verifier_programmed(need, r, element);
+}
+
+/* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
+static float change_of_axis(const struct verifier_need *need, const struct route_slots *slots,
+                            float rounding_s, unsigned i, float rate, float by)
+{
+    const float first = need->first[i];
+    const float second = need->second[i];
+    const float a = LIMIT * slots->acceleration_mm_s2[i] - second * rate * rate;
+    const float j = LIMIT * slots->jerk_mm_s3[i] - need->third[i] * rate * rate * rate;
+    const float per_by = first / rounding_s + 3.0f * second * rate;
+
+    by = first * by > a ? a / first : by;
+    return per_by * by > j ? j / per_by : by;
+}
+
+float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
+                              const struct verifier_change *change, float rate)
+{
+    const float rounding_s = (float)change->rounding_s;
+    float by = (float)change->by;
+    float most = CHANGE_MOST * by;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
+    }
+    while (2.0f * by <= most) {
+        by *= 2.0f;
+    }
+    return by;
+}
+
+/* From one of a piece's control points to the next, weighted, and from its first one to its last. */
+struct steps {
+    lanes step[3][SMOOTH_GROUPS_MAX];
+    lanes way[SMOOTH_GROUPS_MAX];
+};
+
+static lanes weighted(const struct window *w, unsigned group, lanes_int units)
+{
+    return lanes_at(w->weighted_unit_mm + (size_t)group * SMOOTH_LANES) * lanes_of(units);
+}
+
+static void steps_of(const struct window *w, const struct route *r, unsigned piece, struct steps *s)
+{
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes_int *c = w->x + (size_t)g * w->capacity + piece;
+
+        for (unsigned k = 0; k < 3; k++) {
+            s->step[k][g] = weighted(w, g, c[k + 1] - c[k]);
+        }
+        s->way[g] = s->step[0][g] + s->step[1][g] + s->step[2][g];
+    }
+}
+
+static float dot_of(const struct route *r, const lanes a[], const lanes b[])
+{
+    float dot = 0.0f;
+
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes product = a[g] * b[g];
+
+        dot = dot + product[0] + product[1] + product[2] + product[3];
+    }
+    return dot;
+}
+
+/* Square of the sine of the largest angle between a piece and the way from its first control point to its last; 1: a right one. */
+static float turn_square(const struct route *r, const struct steps *s)
+{
+    const float way = dot_of(r, s->way, s->way);
+    float most = 0.0f;
+
+    for (unsigned k = 0; k < 3; k++) {
+        const float along = dot_of(r, s->step[k], s->way);
+        const float both = dot_of(r, s->step[k], s->step[k]) * way;
+
+        if (along < 0.0f) {
+            return 1.0f;
+        }
+        most = both > 0.0f ? single_max(most, 1.0f - along * along / both) : most;
+    }
+    return most;
+}
+
+/* Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the second derivative. */
+static float bend_square(const struct window *w, const struct route *r, unsigned sample)
+{
+    lanes bend[SMOOTH_GROUPS_MAX];
+
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes_int *c = w->x + (size_t)g * w->capacity + sample;
+
+        bend[g] = weighted(w, g, c[-1] - 2 * c[0] + c[1]);
+    }
+    return dot_of(r, bend, bend);
+}
+
+/* The most of that on a piece and its neighbours, which a line between two setpoints may reach into. */
+static float bend_around(const struct window *w, const struct route *r, unsigned piece)
+{
+    const unsigned end = piece + 5 < w->count ? piece + 4 : w->count - 1;
+    float most = 0.0f;
+
+    for (unsigned i = piece > 0 ? piece : 1; i < end; i++) {
+        most = single_max(most, bend_square(w, r, i));
+    }
+    return single_sqrt(most);
+}
+
+/*
+ * The most across a piece; it is largest at one of the ends. What lies along the piece takes no place off the line; what lies along the way from its first control point to its last does
+ * so where the piece turns from that.
+ */
+static float bend_across(const struct window *w, const struct route *r, unsigned piece)
+{
+    struct steps s;
+    float most = 0.0f;
+
+    steps_of(w, r, piece, &s);
+    const float way = dot_of(r, s.way, s.way);
+    const float turn = single_sqrt(turn_square(r, &s));
+
+    for (unsigned k = 0; k < 2; k++) {
+        lanes bend[SMOOTH_GROUPS_MAX];
+
+        for (unsigned g = 0; g < r->slots.groups; g++) {
+            bend[g] = s.step[k + 1][g] - s.step[k][g];
+        }
+        const float square = dot_of(r, bend, bend);
+        const float along =
+            way > 0.0f ? single_abs(dot_of(r, bend, s.way)) / single_sqrt(way) : 0.0f;
+        const float across = single_sqrt(single_max(0.0f, square - along * along));
+
+        most = single_max(most, across + turn * along);
+    }
+    return most;
+}
+
+/* How many places of a piece are looked at, and how near they must be. */
+struct look {
+    unsigned places;
+    float within_mm;
+    float corner_mm; /* how near chords between them must be to corners */
+};
+
+/*
+ * Between two places that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at most. So many are looked at
+ * that this takes no more than the part that is not verified. The lines through setpoints, a cycle apart, leave corners by
+ * |x''| cycle^2/8 more.
+ */
+static struct look look_of(const struct window *w, const struct route *r, unsigned piece)
+{
+    const float bend = bend_across(w, r, piece);
+    const float tolerance_mm = (float)r->tolerance_mm;
+    const float spare_mm = (1.0f - JUDGED) * tolerance_mm;
+    struct look look = {.places = 1};
+
+    while (look.places < PLACES_MAX &&
+           bend > 8.0f * spare_mm * (float)(look.places * look.places)) {
+        look.places++;
+    }
+    const float off = bend / (8.0f * (float)(look.places * look.places));
+
+    look.within_mm = single_min(JUDGED * tolerance_mm, tolerance_mm - off);
+    look.corner_mm = look.within_mm - bend_around(w, r, piece) * r->chord_per_bend;
+    return look;
+}
+
+/* The place on the route beside one of the curve. */
+static void find_closest(const struct window *w, const struct route *r, unsigned piece,
+                         const float weight[4], struct route_closest *closest)
+{
+    struct window_spot spot;
+    double from;
+    double to;
+    double ignored;
+    double p[AXIS_COUNT];
+
+    closest->element = w->element[piece + 1];
+    closest->at_mm = takt_window_at(w, piece, weight);
+    takt_window_reach(w, piece + 1, &from, &ignored);
+    takt_window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
+    takt_window_spot(w, r, piece, weight, &spot);
+    takt_window_place(w, r, &spot, p);
+    takt_route_closest(r, p, from, to, closest);
+}
+
+/* How far a place of a piece leaves the tolerance; 0 or less: not at all. */
+static float beyond_of(const struct window *w, const struct route *r, unsigned piece,
+                       unsigned place)
+{
+    const struct look look = look_of(w, r, piece);
+    struct route_closest closest;
+    float weight[4];
+
+    takt_window_weights((float)place / (float)look.places, weight);
+    find_closest(w, r, piece, weight, &closest);
+    return closest.distance_mm - look.within_mm;
+}
+
+/* From one place looked at to the next one. */
+static void set_chord(const struct window *w, const struct route *r, const struct window_spot *from,
+                      const struct window_spot *to, struct order_chord *chord)
+{
+    takt_window_place(w, r, from, chord->from);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        chord->way[i] = w->weighted_unit_mm[i] * (float)(to->at[i] - from->at[i]);
+    }
+}
+
+/* A motion, and how fast it is gone along at its feed. */
+struct pace {
+    uint32_t element;
+    float rate;
+};
+
+/* The motion whose feed is the highest, among those that the curve can be on here. */
+static struct pace fastest(const struct route *r, const struct order *order,
+                           const struct verifier_need *need)
+{
+    struct pace most = {.element = order->element, .rate = -1.0f};
+    uint32_t e = order->element;
+
+    for (unsigned i = 0; i < order->count; i++) {
+        const struct order_span *span = &order->span[i];
+
+        e = takt_route_find(r, span->first_mm, e);
+        do {
+            const float rate = takt_verifier_programmed(need, r, e);
+
+            most = rate > most.rate ? (struct pace){e, rate} : most;
+            e++;
+        } while (e < r->count && route_element(r, e)->start_mm < span->last_mm);
+    }
+    return most;
+}
+
+/* The slowest motion from the first to the last that the curve can be on before or after a chord. */
+static struct pace slowest(const struct route *r, const struct order *before,
+                           const struct order *after, const struct verifier_need *need)
+{
+    const double end_mm = after->span[after->count - 1].last_mm;
+    uint32_t e = takt_route_find(r, before->span[0].first_mm, before->element);
+    struct pace least = {.element = e, .rate = takt_verifier_programmed(need, r, e)};
+
+    while (++e < r->count && route_element(r, e)->start_mm < end_mm) {
+        const float rate = takt_verifier_programmed(need, r, e);
+
+        least = rate < least.rate ? (struct pace){e, rate} : least;
+    }
+    return least;
+}
+
+/* Is there a way on along a chord which is on motions of this rate or more alone, and passes others in an instant? */
+static bool keeps_pace(const struct route *r, const struct order *before,
+                       const struct verifier_need *need, float rate, struct order_chord chord)
+{
+    struct order o = *before;
+
+    chord.least_mm_s[0] = need->linear_mm_s > 0.0f ? SAME * rate * need->linear_mm_s : 0.0f;
+    chord.least_mm_s[1] = need->rotary_mm_s > 0.0f ? SAME * rate * need->rotary_mm_s : 0.0f;
+    takt_order_go(&o, r, &chord);
+    return o.count > 0;
+}
+
+/*
+ * A motion of a feed that the curve may have all along a chord: that of the slower one of its ends, unless it must be on a slower
+ * one between them.
+ */
+static struct pace pace_on(const struct route *r, const struct order *before,
+                           const struct order *after, const struct verifier_need *need,
+                           const struct order_chord *chord)
+{
+    const struct pace from = fastest(r, before, need);
+    const struct pace to = fastest(r, after, need);
+    const struct pace ends = to.rate < from.rate ? to : from;
+    const struct pace least = slowest(r, before, after, need);
+
+    return least.rate < ends.rate && !keeps_pace(r, before, need, ends.rate, *chord) ? least : ends;
+}
+
+/*
+ * The order along a piece, and whose feed is its: at each place of it the curve is on some motion of that feed or more. Its
+ * first place from which there is no way on, or 0.
+ */
+static unsigned follow_piece(struct window *w, const struct route *r, unsigned piece,
+                             struct order *order)
+{
+    const struct look look = look_of(w, r, piece);
+    struct order_chord chord = {.within_mm = look.within_mm,
+                                .corner_mm = look.corner_mm,
+                                .believed_mm = w->at_mm[piece + 2]};
+    struct verifier_need need;
+    struct window_spot a;
+    float weight[4];
+    unsigned k = 1;
+
+    takt_verifier_need(w, r, piece, &need);
+    struct pace least = fastest(r, order, &need);
+
+    takt_window_weights(0.0f, weight);
+    takt_window_spot(w, r, piece, weight, &a);
+    for (; k <= look.places && order->count > 0; k++) {
+        const struct order before = *order;
+        struct window_spot b;
+
+        takt_window_weights((float)k / (float)look.places, weight);
+        takt_window_spot(w, r, piece, weight, &b);
+        set_chord(w, r, &a, &b, &chord);
+        takt_order_go(order, r, &chord);
+        a = b;
+        if (order->count > 0) {
+            const struct pace here = pace_on(r, &before, order, &need, &chord);
+
+            least = here.rate < least.rate ? here : least;
+        }
+    }
+    const bool lost = order->count == 0;
+
+    w->paced[piece] = (unsigned char)((lost ? w->element[piece + 1] : least.element) - r->first);
+    return lost ? k - 1 : 0;
+}
+
+/* The end of the route must have been come to in order. */
+static bool is_end(const struct window *w, unsigned piece)
+{
+    return w->at_end && piece + 4 == w->count;
+}
+
+void takt_verifier_order(struct window *w, const struct route *r, unsigned count,
+                         struct order *order)
+{
+    for (unsigned i = 0; i < count; i++) {
+        (void)follow_piece(w, r, i, order);
+    }
+}
+
+void takt_verifier_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
+                          const struct order *order, struct verifier_verdict *v)
+{
+    struct order o = *order;
+
+    v->good = 0;
+    v->whole[0] = 0;
+    v->beyond_mm = 0.0f;
+    v->followed = 0;
+    v->order = o;
+    while (v->good < count) {
+        const unsigned bad = follow_piece(w, r, v->good, &o);
+        const bool whole = order_reaches(&o, w->at_mm[v->good + 2]);
+
+        if (bad > 0) {
+            v->beyond_mm = beyond_of(w, r, v->good, bad);
+            return;
+        }
+        if (is_end(w, v->good) && !whole) {
+            return;
+        }
+        v->good++;
+        v->whole[v->good] = (unsigned char)(whole ? v->good : v->whole[v->good - 1]);
+        if (whole && v->good <= keep) {
+            v->followed = v->good;
+            v->order = o;
+        }
+    }
+}

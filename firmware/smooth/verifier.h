@@ -1,0 +1,69 @@
+/*
+ * What a piece of the curve needs of the axes, and whether it is within the tolerance.
+ */
+#ifndef TAKT_SMOOTH_VERIFIER_H
+#define TAKT_SMOOTH_VERIFIER_H
+
+#include "smooth/order.h"
+#include "smooth/window.h"
+
+/* Most of |dx/du|, |d2x/du2|, |d3x/du3| on a piece, u in s of nominal time; by slot. */
+struct verifier_need {
+    float first[AXIS_COUNT];
+    float second[AXIS_COUNT];
+    float third[AXIS_COUNT];
+    float linear_mm_s; /* over X, Y, Z: the feed of motions of one of them, */
+    float rotary_mm_s; /* and over the others: of those of them alone */
+};
+
+/* How fast nominal time may pass on a piece. */
+struct verifier_rate {
+    float most;       /* by the axes' limits: never exceeded */
+    float programmed; /* at the programmed feed; infinite for a rapid */
+};
+
+/* How fast the rate of nominal time may change, on every piece of a chain where the axes move: 1/s, 1/s2. */
+struct verifier_change {
+    double by;
+    double rounded;
+    double rounding_s; /* over which it is rounded */
+};
+
+/* What a machine's axes are left for changes of rate, where a piece takes so long. */
+void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
+                          struct verifier_change *change);
+void takt_verifier_need(const struct window *w, const struct route *r, unsigned piece,
+                        struct verifier_need *need);
+/*
+ * How fast the rate may change on a piece while it is not above a rate, 1/s: at least by change, and a power of two times
+ * that, so that neighbours mostly have the same.
+ */
+float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
+                              const struct verifier_change *change, float rate);
+void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,
+                        const struct verifier_change *change, struct verifier_rate *rate);
+/* The rate at which a piece is gone along at the programmed feed of an element; infinite for a rapid. */
+float takt_verifier_programmed(const struct verifier_need *need, const struct route *r,
+                               uint32_t element);
+/* What is said of a window's pieces. */
+struct verifier_verdict {
+    unsigned good; /* pieces from the first one on that keep the tolerance in order */
+    float
+        beyond_mm; /* how far the next piece leaves the tolerance; 0 or less if it does not, but breaks the order */
+    /* by number of pieces, those after which the curve can be as far as it is thought to be: no corner is left out */
+    unsigned char whole[SMOOTH_SAMPLES_MAX];
+    unsigned followed;  /* the last of those of the pieces that were to be kept, */
+    struct order order; /* and what can have been come to there */
+};
+
+/*
+ * Verifies the first count pieces, of which keep are to be kept. order: what can have been come to where they begin.
+ * Tells the window whose feed is theirs.
+ */
+void takt_verifier_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
+                          const struct order *order, struct verifier_verdict *v);
+/* The order after the first count pieces, and whose feed is theirs. */
+void takt_verifier_order(struct window *w, const struct route *r, unsigned count,
+                         struct order *order);
+
+#endif

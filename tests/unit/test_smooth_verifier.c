@@ -1,0 +1,157 @@
+/* How fast nominal time may pass on a piece of a smoothed curve, and how fast that may change. */
+#include "smooth/verifier.h"
+
+#include "base/maths.h"
+
+#include <string.h>
+#include <unity.h>
+
+static struct smooth_limits limits;
+static struct verifier_change change;
+static struct verifier_need need;
+static struct route route;
+
+void setUp(void)
+{
+    memset(&need, 0, sizeof need);
+}
+
+void tearDown(void)
+{
+}
+
+/* That of a tolerance of 0.02 mm at 1000 mm/s2. */
+#define INTERVAL_S 4e-3
+
+/* One axis. */
+static void set_machine(double velocity, double acceleration, double jerk)
+{
+    memset(&limits, 0, sizeof limits);
+    limits.axes = 1;
+    limits.cycle_s = 5e-4;
+    limits.velocity_mm_s[AXIS_X] = velocity;
+    limits.acceleration_mm_s2[AXIS_X] = acceleration;
+    limits.jerk_mm_s3[AXIS_X] = jerk;
+    takt_verifier_change(&limits, INTERVAL_S, &change);
+    takt_route_init(&route, &limits, 0.01);
+}
+
+static double rate_of(double first, double second, double third)
+{
+    struct verifier_rate rate;
+
+    need.first[0] = (float)first;
+    need.second[0] = (float)second;
+    need.third[0] = (float)third;
+    takt_verifier_rate(&need, &route, 0, &change, &rate);
+    return (double)rate.most;
+}
+
+/* x' r <= V, x' r' + x'' r^2 <= A, x' r'' + 3 x'' r r' + x''' r^3 <= J */
+static void check_limits(double r, double first, double second, double third)
+{
+    const double j = first * change.rounded + 3.0 * second * r * change.by + third * r * r * r;
+
+    TEST_ASSERT_TRUE(first * r <= limits.velocity_mm_s[AXIS_X] * (1.0 + 1e-6));
+    TEST_ASSERT_TRUE(first * change.by + second * r * r <= limits.acceleration_mm_s2[AXIS_X]);
+    TEST_ASSERT_TRUE(j <= limits.jerk_mm_s3[AXIS_X]);
+}
+
+/* The built-in mill: A/J is 20 ms, shorter than any limit of the rounding. */
+static void test_a_change_is_rounded_over_the_time_that_the_acceleration_takes(void)
+{
+    set_machine(100.0, 1000.0, 50000.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.02, change.rounding_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, change.by / 0.02, change.rounded);
+}
+
+/* V r'/A of the acceleration: 6 % at least, half at most, and between what a stop over 0.7 of 256 pieces needs. */
+static void test_shorter_pieces_leave_more_for_changes_up_to_half(void)
+{
+    set_machine(100.0, 250.0, 50000.0);
+    takt_verifier_change(&limits, 20e-3, &change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.06 * 2.5, change.by);
+    takt_verifier_change(&limits, 6e-3, &change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 / (2.0 * 0.7 * 256.0 * 6e-3), change.by);
+    takt_verifier_change(&limits, 1e-3, &change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * 2.5, change.by);
+}
+
+/* V J/A^2 = 1/16: the axis comes to sqrt(V J), a quarter of A, at most. */
+static void test_acceleration_that_jerk_leaves_no_time_for_counts_for_nothing(void)
+{
+    set_machine(100.0, 1000.0, 10000.0);
+    const struct verifier_change reached = change;
+
+    set_machine(100.0, 4000.0, 10000.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, reached.by, change.by);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, reached.rounding_s, change.rounding_s);
+}
+
+static void test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate(void)
+{
+    set_machine(100.0, 1000.0, 50000.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, rate_of(100.0, 0.0, 0.0));
+    TEST_ASSERT_TRUE(rate_of(0.0, 1000.0, 0.0) > 0.99);
+    TEST_ASSERT_TRUE(rate_of(0.0, 0.0, 50000.0) > 0.99);
+}
+
+/* from, and ever half as much again. */
+static double grown(double from, unsigned times)
+{
+    for (unsigned i = 0; i < times; i++)
+        from *= 1.5;
+    return from;
+}
+
+static void check_half_used(double velocity, double acceleration, double jerk)
+{
+    set_machine(velocity, acceleration, jerk);
+    const double first = 0.5 * velocity;
+    const double second = 0.5 * maths_min(acceleration, jerk / change.by / 2.0);
+    const double third = 0.5 * jerk;
+    const double r = rate_of(first, second, third);
+
+    TEST_ASSERT_TRUE(r >= 0.5);
+    check_limits(r, first, second, third);
+}
+
+/*
+ * Where A/J is long, or the acceleration high for the velocity, a change of rate alone could need more than all of the
+ * jerk. What was left for the curve was nothing then: it stood for ever.
+ */
+static void test_no_machine_makes_a_curve_stand_that_needs_half_its_limits(void)
+{
+    for (unsigned v = 0; v < 8; v++)
+        for (unsigned a = 0; a < 10; a++)
+            for (unsigned j = 0; j < 14; j++)
+                check_half_used(grown(20.0, v), grown(200.0, a), grown(5000.0, j));
+}
+
+static void test_the_rate_is_never_nothing(void)
+{
+    for (unsigned a = 0; a < 10; a++) {
+        for (unsigned j = 0; j < 14; j++) {
+            const double acceleration = grown(200.0, a);
+            const double jerk = grown(5000.0, j);
+
+            set_machine(20.0, acceleration, jerk);
+            const double r = rate_of(20.0, acceleration, jerk);
+
+            TEST_ASSERT_TRUE(r > 1e-3);
+            check_limits(r, 20.0, acceleration, jerk);
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_change_is_rounded_over_the_time_that_the_acceleration_takes);
+    RUN_TEST(test_shorter_pieces_leave_more_for_changes_up_to_half);
+    RUN_TEST(test_acceleration_that_jerk_leaves_no_time_for_counts_for_nothing);
+    RUN_TEST(test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate);
+    RUN_TEST(test_no_machine_makes_a_curve_stand_that_needs_half_its_limits);
+    RUN_TEST(test_the_rate_is_never_nothing);
+    return UNITY_END();
+}
