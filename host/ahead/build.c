@@ -141,8 +141,91 @@ static void set_tube(const struct problem_window *w, struct problem_ball *ball, 
     ball->radius_mm = radius_of(w, e, k, 0.5);
 }
 
-/* Where the tool's curve is nearest to a point, from the half knot nearest to it on. */
-static double nearest_knot(const struct trail *t, const double corner[3], double u)
+/* A stray tool is wherever it has got to: its closest point of the path is no farther along the path than twice as far as it is from the tool. */
+static void set_stray_ball(const struct problem_window *w, struct problem_ball *ball, size_t s,
+                           size_t k, const double weight[4], double place_mm, size_t hint)
+{
+    const struct trail *t = w->trail;
+    const struct ahead_element *e;
+    struct ahead_closest closest;
+    double tool[3];
+    double away[3];
+    double x[3];
+
+    trail_sum(t->tool + k, weight, tool);
+    trail_sum(t->stray[s] + k, weight, x);
+    vector_from_to(tool, x, away);
+    ahead_path_closest(w->path, x, place_mm, EXCESS_REACH_MM + 2 * vector_length(away), hint,
+                       &closest);
+    vector_copy(closest.tangent, ball->along);
+    vector_from_to(closest.point, x, ball->offset);
+    if (!is_beside(ball))
+        memset(ball->along, 0, sizeof ball->along);
+    memcpy(ball->weight, weight, sizeof ball->weight);
+    e = &w->path->element[closest.element];
+    ball->radius_mm = e->exact ? 0 : STRAY_TOLERANCES * radius_of(w, e, k, 0.5);
+}
+
+/* The row about the second of three control points: weights of modes.h; time as problem.h has it, E and q both being curves. */
+static void set_swing(const struct problem_window *w, struct problem_swing *row, size_t s, size_t k,
+                      int axis, const struct problem_side *motor)
+{
+    const struct modes_stray *as = &w->limits->modes.stray[s][axis];
+    const unsigned modes = w->trail->modes;
+    const double own[3] = {as->determinant, -as->trace, 1};
+    static const double second[3] = {1, -2, 1};
+    double q[3];
+    double e[3];
+
+    memset(row, 0, sizeof *row);
+    for (size_t n = 0; n < 3; n++) {
+        q[n] = w->trail->motor[k + n][axis];
+        e[n] = w->trail->stray[s][k + n][axis] - q[n];
+        row->by_own[n] = own[n];
+        for (size_t i = 0; i < 1 + 2 * (size_t)modes; i++) {
+            const double weight = as->pull * second[n] - own[n];
+
+            row->by_curve[n + i] += weight * motor->by_curve[n][axis][i];
+            row->by_time[n + i] += weight * motor->by_time[n][axis][i];
+        }
+    }
+    if (as->part == 0)
+        return;
+    const double scale = as->pull / as->part;
+    const double e1 = 0.5 * (e[2] - e[0]);
+    const double first = e1 + as->part * 0.5 * (q[2] - q[0]);
+    const double bend = e[2] - 2 * e[1] + e[0] + as->part * (q[2] - 2 * q[1] + q[0]);
+
+    row->by_time[1 + modes] += scale * (bend + as->drag * e1);
+    row->by_time[2 + modes] += scale * 0.25 * first;
+    row->by_time[0 + modes] -= scale * 0.25 * first;
+}
+
+static void set_strays(struct problem *p, const struct problem_window *w, size_t i,
+                       const double *place_mm, size_t hint)
+{
+    for (size_t s = 0; s < p->strays; s++) {
+        struct problem_stray *stray = &p->stray[i][s];
+
+        set_stray_ball(w, &stray->ball[0], s, w->first + i, knot_value, place_mm[0], hint);
+        set_stray_ball(w, &stray->ball[1], s, w->first + i, middle_value, place_mm[1], hint);
+        for (int k = 2; k < STRAY_BALLS; k++)
+            stray->ball[k].radius_mm = 0;
+        for (int axis = 0; axis < 3; axis++)
+            set_swing(w, &stray->swing[axis], s, w->first + i, axis, &p->map[i].motor);
+    }
+}
+
+/* A curve that has to come near the path's junctions, and where its balls are. */
+struct passer {
+    double (*control)[3];
+    double tolerances;
+    int stray; /* -1: the tool itself */
+};
+
+/* Where a curve is nearest to a point, from the half knot nearest to it on. */
+static double nearest_knot(const struct trail *t, double (*control)[3], const double corner[3],
+                           double u)
 {
     const double last = (double)t->intervals;
 
@@ -156,9 +239,9 @@ static double nearest_knot(const struct trail *t, const double corner[3], double
         double square;
 
         trail_weights(v - (double)k, weight);
-        trail_sum(t->tool + k, weight, x);
+        trail_sum(control + k, weight, x);
         trail_slopes(v - (double)k, weight);
-        trail_sum(t->tool + k, weight, slope);
+        trail_sum(control + k, weight, slope);
         vector_from_to(x, corner, way);
         square = vector_dot(slope, slope);
         if (square < 1e-16)
@@ -168,12 +251,13 @@ static double nearest_knot(const struct trail *t, const double corner[3], double
     return maths_clamp(u, 0, last - 1e-9);
 }
 
-static double distance_at(const struct trail *t, size_t site, const double corner[3])
+static double distance_at(const struct trail *t, double (*control)[3], size_t site,
+                          const double corner[3])
 {
     double x[3];
     double way[3];
 
-    trail_at(t, 0.5 * (double)site, x);
+    trail_at(t, control, 0.5 * (double)site, x);
     vector_from_to(x, corner, way);
     return vector_length(way);
 }
@@ -182,45 +266,55 @@ static double distance_at(const struct trail *t, size_t site, const double corne
  * The half knot nearest to a corner: from where the path's corner is passed downhill, so that another pass of a path that
  * turns back on itself is not taken for it.
  */
-static size_t nearest_site(const struct trail *t, const double corner[3], size_t site, size_t first,
-                           size_t last)
+static size_t nearest_site(const struct trail *t, double (*control)[3], const double corner[3],
+                           size_t site, size_t first, size_t last)
 {
-    double here = distance_at(t, site, corner);
+    double here = distance_at(t, control, site, corner);
 
-    while (site < last && distance_at(t, site + 1, corner) < here)
-        here = distance_at(t, ++site, corner);
-    while (site > first && distance_at(t, site - 1, corner) < here)
-        here = distance_at(t, --site, corner);
+    while (site < last && distance_at(t, control, site + 1, corner) < here)
+        here = distance_at(t, control, ++site, corner);
+    while (site > first && distance_at(t, control, site - 1, corner) < here)
+        here = distance_at(t, control, --site, corner);
     return site;
+}
+
+/* A free one of a cell's balls, or its last. */
+static struct problem_ball *free_ball(const struct problem *p, size_t cell, int stray)
+{
+    struct problem_ball *ball = stray < 0 ? p->cell[cell].ball : p->stray[cell][stray].ball;
+    const int balls = stray < 0 ? CELL_BALLS : STRAY_BALLS;
+    int slot = 2;
+
+    while (slot + 1 < balls && ball[slot].radius_mm > 0)
+        slot++;
+    return &ball[slot];
 }
 
 /* The curve at u comes within reach of a junction; of a curved one sideways, so that it may still move along. */
 static void add_junction(struct problem *p, const struct problem_window *w,
-                         const struct ahead_element *e, double u)
+                         const struct ahead_element *e, const struct passer *by, double u)
 {
     const size_t k = (size_t)u;
     struct problem_ball *ball;
     double x[3];
     double length;
-    int slot = 2;
 
     if (k < w->first || k >= w->first + p->cells)
         return;
-    while (slot + 1 < CELL_BALLS && p->cell[k - w->first].ball[slot].radius_mm > 0)
-        slot++;
-    ball = &p->cell[k - w->first].ball[slot];
+    ball = free_ball(p, k - w->first, by->stray);
     trail_slopes(u - (double)k, ball->weight);
-    trail_sum(w->trail->tool + k, ball->weight, ball->along);
+    trail_sum(by->control + k, ball->weight, ball->along);
     length = vector_length(ball->along);
     for (int i = 0; i < 3; i++)
         ball->along[i] = e->junction == AHEAD_CURVED && length > 0 ? ball->along[i] / length : 0;
     trail_weights(u - (double)k, ball->weight);
-    trail_sum(w->trail->tool + k, ball->weight, x);
+    trail_sum(by->control + k, ball->weight, x);
     vector_from_to(e->curve.end.at, x, ball->offset);
-    ball->radius_mm = radius_of(w, e, k, w->limits->cycle_s / w->limits->step_s);
+    ball->radius_mm = by->tolerances * radius_of(w, e, k, w->limits->cycle_s / w->limits->step_s);
 }
 
-static void set_junctions(struct problem *p, const struct problem_window *w)
+static void pass_junctions(struct problem *p, const struct problem_window *w,
+                           const struct passer *by)
 {
     const struct trail *t = w->trail;
     const size_t last = 2 * (w->first + p->cells);
@@ -233,13 +327,21 @@ static void set_junctions(struct problem *p, const struct problem_window *w)
         const double at_mm = w->path->element[k + 1].start_mm;
         const double *end = e->curve.end.at;
 
-        if (e->junction == AHEAD_SMOOTH)
+        if (e->junction == AHEAD_SMOOTH || (by->stray >= 0 && e->exact))
             continue;
         while (site < last && t->place_mm[site] < at_mm)
             site++;
-        add_junction(p, w, e,
-                     nearest_knot(t, end, 0.5 * (double)nearest_site(t, end, site, first, last)));
+        const size_t nearest = nearest_site(t, by->control, end, site, first, last);
+
+        add_junction(p, w, e, by, nearest_knot(t, by->control, end, 0.5 * (double)nearest));
     }
+}
+
+static void set_junctions(struct problem *p, const struct problem_window *w)
+{
+    pass_junctions(p, w, &(struct passer){w->trail->tool, 1, -1});
+    for (int s = 0; s < (int)p->strays; s++)
+        pass_junctions(p, w, &(struct passer){w->trail->stray[s], STRAY_TOLERANCES, s});
 }
 
 static void set_scales(struct problem *p, const struct ahead_limits *l)
@@ -280,6 +382,8 @@ void problem_build(struct problem *p, const struct problem_window *w)
     size_t hint = 0;
 
     p->modes = w->trail->modes;
+    p->rest = w->first + p->cells == w->trail->intervals ? w->trail->rest : 0;
+    p->strays = p->modes > 0 ? w->limits->modes.strays : 0;
     set_scales(p, w->limits);
     for (size_t i = 0; i < p->cells; i++) {
         double(*motor)[3] = w->trail->motor + w->first + i;
@@ -295,6 +399,7 @@ void problem_build(struct problem *p, const struct problem_window *w)
             cell->ball[k].radius_mm = 0;
         if (p->modes > 0)
             set_map(&p->map[i], &w->limits->modes, w->trail->control + w->first + i);
+        set_strays(p, w, i, place_mm, hint);
     }
     set_junctions(p, w);
 }

@@ -216,7 +216,7 @@ enum compile_result compile_begin(struct compile *c, const struct compile_config
     set_limits(c);
     header = header_of(c);
     encoder_begin(&c->encoder, stream, &header);
-    c->solver = solver_new(config->workers, c->limits.modes.count);
+    c->solver = solver_new(config->workers, &c->limits.modes);
     return c->solver != NULL ? COMPILE_DONE : COMPILE_MEMORY;
 }
 

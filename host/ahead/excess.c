@@ -8,11 +8,11 @@
 /* Junctions may be farther off than their ball's radius by the solver's last step. */
 #define JUNCTION_PART 0.99
 
+/* Likewise stray tools. */
+#define STRAY_PART 0.99
+
 /* Places of an interval at which the distance is measured. */
 #define PARTS 12
-
-/* How far along the path a closest point is looked for. */
-#define REACH_MM 0.3
 
 /* Differences of control points over their limits. */
 static double limits_of(const struct ahead_limits *l, double (*c)[3])
@@ -53,8 +53,8 @@ static double distance_of(const struct problem_window *w, size_t interval, size_
         struct ahead_closest closest;
         double x[3];
 
-        trail_at(t, (double)interval + part, x);
-        ahead_path_closest(w->path, x, from_mm + part * way_mm, REACH_MM, *hint, &closest);
+        trail_at(t, t->tool, (double)interval + part, x);
+        ahead_path_closest(w->path, x, from_mm + part * way_mm, EXCESS_REACH_MM, *hint, &closest);
         *hint = closest.element;
         most =
             maths_max(most, closest.distance_mm / w->path->element[closest.element].tolerance_mm);
@@ -74,6 +74,22 @@ static double junction_of(const struct problem_cell *cell)
     return most * JUNCTION_PART;
 }
 
+/* Stray tools at two half knots; that they bend away between them is in the radius. */
+static double strays_of(const struct problem *p, size_t i)
+{
+    double most = 0;
+
+    for (size_t s = 0; s < p->strays; s++) {
+        for (int k = 0; k < STRAY_BALLS; k++) {
+            const struct problem_ball *ball = &p->stray[i][s].ball[k];
+
+            if (ball->radius_mm > 0)
+                most = maths_max(most, vector_length(ball->offset) / ball->radius_mm);
+        }
+    }
+    return most * STRAY_PART;
+}
+
 double excess_measure(const struct problem_window *w, const struct problem *p)
 {
     size_t hint = ahead_path_find(w->path, w->trail->place_mm[2 * w->first], 0);
@@ -88,6 +104,7 @@ double excess_measure(const struct problem_window *w, const struct problem *p)
         here = maths_max(here, limits_of(w->limits, control));
         here = maths_max(here, feed_of(w->limits, control, feed_mm_s));
         here = maths_max(here, junction_of(&p->cell[i]));
+        here = maths_max(here, strays_of(p, i));
         w->trail->beyond[w->first + i] = here;
         most = maths_max(most, here);
     }

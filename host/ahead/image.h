@@ -12,12 +12,13 @@
 #include "ahead/rows.h"
 
 /* Unknowns of a cell with modes: four of each of 4 + 2 count control points. */
-#define IMAGE_UNKNOWNS (4 * (4 + 2 * MODES_MAX))
+#define IMAGE_UNKNOWNS ((4 + 3 * MODES_STRAYS) * (4 + 2 * MODES_MAX))
 
 /* What rows are on, of both sides. */
 struct image {
     double motor[CELL_UNKNOWNS];
     double tool[CELL_UNKNOWNS];
+    double stray[MODES_STRAYS][CELL_UNKNOWNS];
 };
 
 /* Valid as long as x and image are. */
@@ -25,10 +26,17 @@ struct rows_at image_of(const struct problem *p, size_t cell, const double *x, s
 
 /* b += G^T v in the unknowns; z as image_of has it. */
 void image_transpose(const struct problem *p, size_t cell, const struct rows_at *z,
-                     const double v[CELL_ROWS], double *b);
+                     const double v[ROWS_MAX], double *b);
 
 /* Sets the lower triangle of k, a square of as many unknowns, as rows_normal has it. */
 void image_normal(const struct problem *p, size_t cell, const struct rows_at *z,
-                  const double w[CELL_ROWS], const double m[CELL_ROWS], double *k);
+                  const double w[ROWS_MAX], const double m[ROWS_MAX], double *k);
+
+/*
+ * Stray tools swing as their rows say, to within what 1 / weight lets them: the squares of these rows, times weight, are
+ * added to the lower triangle of k, and what they ask for at x to b.
+ */
+void image_swing(const struct problem *p, size_t cell, const double *x, double weight, double *k,
+                 double *b);
 
 #endif

@@ -24,6 +24,10 @@
 /* Second derivative of the time by e; and what keeps changes of the curve small where nothing else does. */
 #define TIME_SQUARE 0.75
 #define MOVE_SQUARE 0.03
+#define STAY_SQUARE 1e9
+
+/* Price of half the square of what the swing of a stray tool is not what follows from the curve, in a knot, in tolerances. */
+#define SWING_SQUARE 1e6
 
 /*
  * Price of half the square of e's second difference: a change of time that trembles from knot to knot and a change of the
@@ -44,30 +48,37 @@ struct interior {
     size_t ends;  /* control points at either end that may not change, */
     size_t free;  /* and those between them that may */
     size_t width; /* of the band */
-    double (*z)[4];
-    double (*dz)[4];
-    double (*slope)[4]; /* of the Lagrangian, negative */
-    double (*right)[4];
+    size_t each;  /* unknowns of a control point */
+    int rows;     /* of a cell */
+    double *z;
+    double *dz;
+    double *slope; /* of the Lagrangian, negative */
+    double *right;
     double *band;
-    struct row (*row)[CELL_ROWS];
+    double (*change)[4];
+    struct row (*row)[ROWS_MAX];
     double move_square;
+    double swing_square;
 };
 
-struct interior *interior_new(size_t cells_max, unsigned modes)
+struct interior *interior_new(size_t cells_max, const struct ahead_modes *modes)
 {
+    const struct problem as = {.modes = modes->count, .strays = modes->strays};
+    const size_t unknowns = problem_each(&as) * cells_max;
     struct interior *w = calloc(1, sizeof *w);
 
     if (w == NULL)
         return NULL;
     w->cells_max = cells_max;
-    w->z = calloc(cells_max, sizeof *w->z);
-    w->dz = calloc(cells_max, sizeof *w->dz);
-    w->slope = calloc(cells_max, sizeof *w->slope);
-    w->right = calloc(cells_max, sizeof *w->right);
-    w->band = calloc(4 * (4 + 2 * (size_t)modes) * 4 * cells_max, sizeof *w->band);
+    w->z = calloc(unknowns, sizeof *w->z);
+    w->dz = calloc(unknowns, sizeof *w->dz);
+    w->slope = calloc(unknowns, sizeof *w->slope);
+    w->right = calloc(unknowns, sizeof *w->right);
+    w->band = calloc(problem_unknowns(&as) * unknowns, sizeof *w->band);
+    w->change = calloc(cells_max, sizeof *w->change);
     w->row = calloc(cells_max, sizeof *w->row);
     if (w->z != NULL && w->dz != NULL && w->slope != NULL && w->right != NULL && w->band != NULL &&
-        w->row != NULL)
+        w->change != NULL && w->row != NULL)
         return w;
     interior_free(w);
     return NULL;
@@ -82,6 +93,7 @@ void interior_free(struct interior *w)
     free(w->slope);
     free(w->right);
     free(w->band);
+    free(w->change);
     free(w->row);
     free(w);
 }
@@ -96,10 +108,10 @@ static size_t end_free(const struct interior *w, size_t cell)
 {
     const size_t left = w->free + w->ends - cell;
 
-    return left < w->width / 4 ? left : w->width / 4;
+    return left < w->width / w->each ? left : w->width / w->each;
 }
 
-static void gather(const struct interior *w, double (*from)[4], size_t cell,
+static void gather(const struct interior *w, const double *from, size_t cell,
                    double x[IMAGE_UNKNOWNS])
 {
     const size_t begin = first_free(w, cell);
@@ -107,27 +119,27 @@ static void gather(const struct interior *w, double (*from)[4], size_t cell,
 
     memset(x, 0, w->width * sizeof *x);
     for (size_t k = begin; k < end; k++)
-        memcpy(x + 4 * k, from[cell + k - w->ends], sizeof from[0]);
+        memcpy(x + w->each * k, from + w->each * (cell + k - w->ends), w->each * sizeof *x);
 }
 
 static void scatter(const struct interior *w, const double b[IMAGE_UNKNOWNS], size_t cell,
-                    double (*to)[4])
+                    double *to)
 {
     const size_t end = end_free(w, cell);
 
     for (size_t k = first_free(w, cell); k < end; k++) {
-        for (int i = 0; i < 4; i++)
-            to[cell + k - w->ends][i] += b[4 * k + (size_t)i];
+        for (size_t i = 0; i < w->each; i++)
+            to[w->each * (cell + k - w->ends) + i] += b[w->each * k + i];
     }
 }
 
 static void scatter_square(struct interior *w, const double *k, size_t cell)
 {
-    const size_t begin = 4 * first_free(w, cell);
-    const size_t end = 4 * end_free(w, cell);
+    const size_t begin = w->each * first_free(w, cell);
+    const size_t end = w->each * end_free(w, cell);
 
     for (size_t j = begin; j < end; j++) {
-        double *column = w->band + (4 * cell + j - 4 * w->ends) * w->width;
+        double *column = w->band + (w->each * cell + j - w->each * w->ends) * w->width;
 
         for (size_t i = j; i < end; i++)
             column[i - j] += k[i * w->width + j];
@@ -138,14 +150,14 @@ static void start(struct interior *w)
 {
     const struct problem *p = w->problem;
     static const double nothing[CELL_UNKNOWNS];
-    const struct rows_at z = {nothing, nothing};
+    const struct rows_at z = {nothing, nothing, {nothing, nothing}};
 
-    memset(w->z, 0, w->free * sizeof *w->z);
+    memset(w->z, 0, w->each * w->free * sizeof *w->z);
     for (size_t i = 0; i < p->cells; i++) {
-        double c[CELL_ROWS];
+        double c[ROWS_MAX];
 
-        rows_value(p, &p->cell[i], &z, c);
-        for (int j = 0; j < CELL_ROWS; j++) {
+        rows_value(p, i, &z, c);
+        for (int j = 0; j < w->rows; j++) {
             struct row *row = &w->row[i][j];
 
             row->s = maths_max(c[j], SLACK_START);
@@ -163,14 +175,14 @@ static double take_values(struct interior *w)
 
     for (size_t i = 0; i < p->cells; i++) {
         double x[IMAGE_UNKNOWNS];
-        double c[CELL_ROWS];
+        double c[ROWS_MAX];
         struct image image;
 
         gather(w, w->z, i, x);
         const struct rows_at z = image_of(p, i, x, &image);
 
-        rows_value(p, &p->cell[i], &z, c);
-        for (int j = 0; j < CELL_ROWS; j++) {
+        rows_value(p, i, &z, c);
+        for (int j = 0; j < w->rows; j++) {
             struct row *row = &w->row[i][j];
 
             row->c = c[j];
@@ -179,7 +191,7 @@ static double take_values(struct interior *w)
             sum += row->s * row->m + row->t * (PRICE - row->m);
         }
     }
-    return sum / (2.0 * CELL_ROWS * (double)p->cells);
+    return sum / (2.0 * w->rows * (double)p->cells);
 }
 
 /* The second difference about f - 1; e is 0 beyond the window's ends. */
@@ -191,13 +203,14 @@ static void smooth_at(struct interior *w, size_t f)
     double bend = 0;
 
     for (size_t i = begin; i < end; i++)
-        bend += second[i] * w->z[f + i - 2][3];
+        bend += second[i] * w->z[w->each * (f + i - 2) + 3];
     for (size_t i = begin; i < end; i++) {
         const size_t at = f + i - 2;
 
-        w->slope[at][3] -= SMOOTH_SQUARE * second[i] * bend;
+        w->slope[w->each * at + 3] -= SMOOTH_SQUARE * second[i] * bend;
         for (size_t j = i; j < end; j++)
-            w->band[(4 * at + 3) * w->width + 4 * (j - i)] += SMOOTH_SQUARE * second[i] * second[j];
+            w->band[(w->each * at + 3) * w->width + w->each * (j - i)] +=
+                SMOOTH_SQUARE * second[i] * second[j];
     }
 }
 
@@ -207,45 +220,68 @@ static void smooth_time(struct interior *w)
         smooth_at(w, f);
 }
 
+/* What stays has a price that nothing else comes near to. */
+static void keep_rest(struct interior *w)
+{
+    const size_t rest = w->problem->rest < w->free ? w->problem->rest : w->free;
+
+    for (size_t f = w->free - rest; f < w->free; f++) {
+        for (size_t i = 0; i < 3; i++)
+            w->band[(w->each * f + i) * w->width] = STAY_SQUARE * w->move_square;
+        w->band[(w->each * f + 3) * w->width] = STAY_SQUARE;
+    }
+}
+
+/* Does the third of a cell's points of stray tools belong to what may change? */
+static bool swings(const struct interior *w, size_t cell)
+{
+    const size_t slot = cell + 2 + 2 * (size_t)w->problem->modes;
+
+    return slot >= w->ends && slot < w->ends + w->free;
+}
+
 /* The normal matrix and its right side without the rows' targets. */
 static void assemble(struct interior *w)
 {
     const struct problem *p = w->problem;
-    const double time_square = p->timed ? TIME_SQUARE : 1e9;
+    const double time_square = p->timed ? TIME_SQUARE : STAY_SQUARE;
 
-    memset(w->band, 0, 4 * w->free * w->width * sizeof *w->band);
+    memset(w->band, 0, w->each * w->free * w->width * sizeof *w->band);
     for (size_t f = 0; f < w->free; f++) {
-        for (int i = 0; i < 3; i++) {
-            w->band[(4 * f + (size_t)i) * w->width] = w->move_square;
-            w->slope[f][i] = -w->move_square * w->z[f][i];
+        for (size_t i = 0; i < w->each; i++) {
+            w->band[(w->each * f + i) * w->width] = w->move_square;
+            w->slope[w->each * f + i] = -w->move_square * w->z[w->each * f + i];
         }
-        w->band[(4 * f + 3) * w->width] = time_square;
-        w->slope[f][3] = (p->timed ? 0.5 : 0) - time_square * w->z[f][3];
+        w->band[(w->each * f + 3) * w->width] = time_square;
+        w->slope[w->each * f + 3] = (p->timed ? 0.5 : 0) - time_square * w->z[w->each * f + 3];
     }
+    keep_rest(w);
     smooth_time(w);
     for (size_t i = 0; i < p->cells; i++) {
         double x[IMAGE_UNKNOWNS];
         double k[IMAGE_UNKNOWNS * IMAGE_UNKNOWNS];
         double b[IMAGE_UNKNOWNS] = {0};
-        double weight[CELL_ROWS];
-        double m[CELL_ROWS];
+        double weight[ROWS_MAX];
+        double m[ROWS_MAX];
+        double back[ROWS_MAX];
         struct image image;
 
         gather(w, w->z, i, x);
         const struct rows_at z = image_of(p, i, x, &image);
 
-        for (int j = 0; j < CELL_ROWS; j++) {
+        for (int j = 0; j < w->rows; j++) {
             weight[j] = w->row[i][j].w;
             m[j] = w->row[i][j].m;
+            back[j] = -m[j];
         }
         image_normal(p, i, &z, weight, m, k);
+        if (swings(w, i))
+            image_swing(p, i, x, w->swing_square, k, b);
         scatter_square(w, k, i);
-        for (int j = 0; j < CELL_ROWS; j++)
-            m[j] = -m[j];
-        image_transpose(p, i, &z, m, b);
+        image_transpose(p, i, &z, back, b);
         scatter(w, b, i, w->slope);
     }
-    band_factor(w->band, w->width, 4 * w->free);
+    band_factor(w->band, w->width, w->each * w->free);
 }
 
 /* What the products of a row should change by; a second step takes the first one's product into account. */
@@ -275,17 +311,17 @@ static void direction(struct interior *w, double mu, bool again, double *primal,
 {
     const struct problem *p = w->problem;
 
-    memcpy(w->right, w->slope, w->free * sizeof *w->right);
+    memcpy(w->right, w->slope, w->each * w->free * sizeof *w->right);
     for (size_t i = 0; i < p->cells; i++) {
         double x[IMAGE_UNKNOWNS];
-        double v[CELL_ROWS];
+        double v[ROWS_MAX];
         double b[IMAGE_UNKNOWNS] = {0};
         struct image image;
 
         gather(w, w->z, i, x);
         const struct rows_at z = image_of(p, i, x, &image);
 
-        for (int j = 0; j < CELL_ROWS; j++) {
+        for (int j = 0; j < w->rows; j++) {
             double with_s;
             double with_t;
 
@@ -295,14 +331,14 @@ static void direction(struct interior *w, double mu, bool again, double *primal,
         image_transpose(p, i, &z, v, b);
         scatter(w, b, i, w->right);
     }
-    memcpy(w->dz, w->right, w->free * sizeof *w->dz);
-    band_solve(w->band, w->width, 4 * w->free, &w->dz[0][0]);
+    memcpy(w->dz, w->right, w->each * w->free * sizeof *w->dz);
+    band_solve(w->band, w->width, w->each * w->free, w->dz);
     *primal = 1;
     *dual = 1;
     for (size_t i = 0; i < p->cells; i++) {
         double x[IMAGE_UNKNOWNS];
         double dx[IMAGE_UNKNOWNS];
-        double product[CELL_ROWS];
+        double product[ROWS_MAX];
         struct image image;
         struct image step;
 
@@ -311,8 +347,8 @@ static void direction(struct interior *w, double mu, bool again, double *primal,
         const struct rows_at z = image_of(p, i, x, &image);
         const struct rows_at dz = image_of(p, i, dx, &step);
 
-        rows_product(p, &p->cell[i], &z, &dz, product);
-        for (int j = 0; j < CELL_ROWS; j++) {
+        rows_product(p, i, &z, &dz, product);
+        for (int j = 0; j < w->rows; j++) {
             struct row *row = &w->row[i][j];
             double with_s;
             double with_t;
@@ -335,7 +371,7 @@ static double mean_after(const struct interior *w, double primal, double dual)
     double sum = 0;
 
     for (size_t i = 0; i < w->problem->cells; i++) {
-        for (int j = 0; j < CELL_ROWS; j++) {
+        for (int j = 0; j < w->rows; j++) {
             const struct row *row = &w->row[i][j];
             const double m = row->m + dual * row->dm;
 
@@ -343,13 +379,13 @@ static double mean_after(const struct interior *w, double primal, double dual)
             sum += (row->t + primal * row->dt) * (PRICE - m);
         }
     }
-    return sum / (2.0 * CELL_ROWS * (double)w->problem->cells);
+    return sum / (2.0 * w->rows * (double)w->problem->cells);
 }
 
 static void advance(struct interior *w, double primal, double dual)
 {
     for (size_t i = 0; i < w->problem->cells; i++) {
-        for (int j = 0; j < CELL_ROWS; j++) {
+        for (int j = 0; j < w->rows; j++) {
             struct row *row = &w->row[i][j];
 
             row->s += primal * row->ds;
@@ -357,10 +393,8 @@ static void advance(struct interior *w, double primal, double dual)
             row->m += dual * row->dm;
         }
     }
-    for (size_t f = 0; f < w->free; f++) {
-        for (int i = 0; i < 4; i++)
-            w->z[f][i] += primal * w->dz[f][i];
-    }
+    for (size_t f = 0; f < w->each * w->free; f++)
+        w->z[f] += primal * w->dz[f];
 }
 
 /* Numbers too far apart for the matrix leave no direction. */
@@ -368,10 +402,8 @@ static bool has_direction(const struct interior *w)
 {
     double sum = 0;
 
-    for (size_t f = 0; f < w->free; f++) {
-        for (int i = 0; i < 4; i++)
-            sum += maths_abs(w->dz[f][i]);
-    }
+    for (size_t f = 0; f < w->each * w->free; f++)
+        sum += maths_abs(w->dz[f]);
     return maths_is_finite(sum);
 }
 
@@ -400,15 +432,20 @@ double (*interior_solve(struct interior *w, const struct problem *p))[4]
     w->ends = trail_ends(p->modes);
     w->free = p->cells - w->ends;
     w->width = problem_unknowns(p);
+    w->each = problem_each(p);
+    w->rows = rows_count(p);
     for (size_t i = 0; i < p->cells; i++)
         radius_mm = maths_min(radius_mm, p->cell[i].ball[0].radius_mm);
     w->move_square = MOVE_SQUARE / (radius_mm * radius_mm);
+    w->swing_square = SWING_SQUARE / (radius_mm * radius_mm);
     start(w);
     for (int i = 0; i < ITERATIONS_MAX; i++) {
         const double mu = take_values(w);
 
-        if (mu * 2 * CELL_ROWS < GAP_END || !iterate(w, mu))
+        if (mu * 2 * w->rows < GAP_END || !iterate(w, mu))
             break;
     }
-    return w->z;
+    for (size_t f = 0; f < w->free; f++)
+        memcpy(w->change[f], w->z + w->each * f, sizeof w->change[f]);
+    return w->change;
 }

@@ -5,8 +5,8 @@
  *
  *     c(z) + t = s,   s, t >= 0,   s m = mu,   t (PRICE - m) = mu
  *
- * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of four unknowns a knot, as wide
- * as the unknowns of one cell.
+ * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of problem_each unknowns a knot, as
+ * wide as the unknowns of one cell. How stray tools swing is no row but squares in that matrix, of a high price.
  */
 #ifndef TAKT_HOST_AHEAD_INTERIOR_H
 #define TAKT_HOST_AHEAD_INTERIOR_H
@@ -18,7 +18,7 @@
 struct interior; /* memory for windows of up to so many cells, with so many modes of an axis */
 
 /* NULL: out of memory. */
-struct interior *interior_new(size_t cells_max, unsigned modes);
+struct interior *interior_new(size_t cells_max, const struct ahead_modes *modes);
 void interior_free(struct interior *w);
 
 /*

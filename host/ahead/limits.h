@@ -4,6 +4,9 @@
 
 #include "ahead/modes.h"
 
+/* Where the modes are others than told, as far as they may be, the tool may be so many tolerances off the path. */
+#define STRAY_TOLERANCES 3
+
 struct ahead_limits {
     double velocity_mm_s[3];
     double acceleration_mm_s2[3];

@@ -24,6 +24,44 @@ static struct modes_stage stage_of(const struct vibration_mode *mode, double ang
                                 .away = -mode->part / (angle * angle)};
 }
 
+/* Of the first mode of an axis; without one E is 0. */
+static struct modes_stray stray_of(const struct vibration_mode *mode, double step_s)
+{
+    const double(*a)[2] = mode->advance;
+    const double angle = mode->w_per_s * step_s;
+    const double trace = a[0][0] + a[1][1];
+    const double determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+
+    if (!(angle > 0))
+        return (struct modes_stray){0};
+    return (struct modes_stray){.trace = trace,
+                                .determinant = determinant,
+                                .pull = mode->part * (1 - trace + determinant) / (angle * angle),
+                                .part = mode->part,
+                                .drag = mode->damping * angle};
+}
+
+static void set_strays(struct ahead_modes *modes, const struct vibration_config *config,
+                       double step_s)
+{
+    modes->strays = vibration_is_uncertain(config) ? MODES_STRAYS : 0;
+    for (int s = 0; s < MODES_STRAYS; s++) {
+        struct vibration_config other = *config;
+        struct vibration v;
+
+        vibration_shift(&other, s == 0 ? -1 : 1);
+        vibration_init(&v, &other, step_s);
+        for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
+            modes->stray[s][i] = stray_of(&v.axis[i].mode[0], step_s);
+        for (int i = 0; i < AXIS_LINEAR_COUNT && modes->strays > 0; i++) {
+            const double angle = v.axis[i].mode[0].w_per_s * step_s;
+
+            if (angle > 0 && MATHS_PI / angle > (double)modes->rest)
+                modes->rest = (size_t)takt_maths_ceil(MATHS_PI / angle);
+        }
+    }
+}
+
 void modes_init(struct ahead_modes *modes, const struct vibration_config *config, double step_s,
                 double cycle_s)
 {
@@ -43,6 +81,7 @@ void modes_init(struct ahead_modes *modes, const struct vibration_config *config
         }
         modes->count = count > modes->count ? count : modes->count;
     }
+    set_strays(modes, config, step_s);
 }
 
 double modes_step_s(const struct vibration_config *config)

@@ -36,7 +36,27 @@ struct modes_stage {
     double away; /* part e_j = away w"_j */
 };
 
+/* Machines whose modes are slower or faster than planned for, as far as they may be. */
+#define MODES_STRAYS 2
+
+/*
+ * How such a machine's tool swings about the motors' control points q: with u = q + E its own,
+ *
+ *     E_(j+1) - trace E_j + determinant E_(j-1) + pull (q_(j+1) - 2 q_j + q_(j-1)) = 0
+ *
+ * the recursion of its free oscillator, pull such that at an even acceleration E is -part q" / w_1^2.
+ */
+struct modes_stray {
+    double trace, determinant, pull;
+    double part;
+    double drag; /* d w_1 h */
+};
+
 struct ahead_modes {
+    unsigned strays; /* that are planned for: 0 or MODES_STRAYS */
+    struct modes_stray stray[MODES_STRAYS][AXIS_LINEAR_COUNT];
+    size_t
+        rest; /* knots in which each of them shows how far it swings: half a period of the slowest */
     unsigned count; /* of the axis that has most; 0: the machine is stiff */
     double
         lag; /* of what the tool is off the motors: so much may setpoints in place of a curve change it */

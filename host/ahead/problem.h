@@ -34,6 +34,8 @@ enum problem_form { FORM_VELOCITY, FORM_ACCELERATION, FORM_JERK, FORM_COUNT };
 
 /* Two half knots, and up to four junctions of the path. */
 #define CELL_BALLS 6
+/* Of a stray tool likewise. */
+#define STRAY_BALLS 4
 
 /* |N (offset + sum_k weight_k d_k)| <= radius, N = 1 - along along^T; along = 0: a ball about a corner. */
 struct problem_ball {
@@ -58,15 +60,33 @@ struct problem_side {
     double by_time[4][3][MODES_REACH_MAX];
 };
 
+/* The row of one axis that says how a stray tool swings (modes.h): its sum over the unknowns is 0. */
+struct problem_swing {
+    double by_own[3];                   /* of the first three of the cell's control points of it */
+    double by_curve[3 + 2 * MODES_MAX]; /* of control points of w, from the cell's first on */
+    double by_time[3 + 2 * MODES_MAX];
+};
+
+/* The tool of a machine with other modes: where it may be, and how it comes there. */
+struct problem_stray {
+    struct problem_ball ball[STRAY_BALLS];
+    struct problem_swing swing[3];
+};
+
 struct problem_map {
     struct problem_side motor, tool;
 };
 
 struct problem {
-    size_t cells;                /* intervals of the window */
-    struct problem_cell *cell;   /* owned by the caller */
-    unsigned modes;              /* of an axis, at most */
-    struct problem_map *map;     /* of every cell if there are modes; owned by the caller */
+    size_t cells;              /* intervals of the window */
+    struct problem_cell *cell; /* owned by the caller */
+    unsigned modes;            /* of an axis, at most */
+    struct problem_map *map;   /* of every cell if there are modes; owned by the caller */
+    unsigned strays;           /* tools of machines of other modes */
+    struct problem_stray (
+        *stray)[MODES_STRAYS]; /* of every cell if there are any; owned by the caller */
+    size_t
+        rest; /* control points before the window's last ones that stay as well, but for stray tools */
     double scale[3][FORM_COUNT]; /* 1 / limit, knots */
     bool timed;                  /* false: e = 0 */
 };
@@ -80,10 +100,19 @@ struct problem_window {
     double inside; /* part of the tolerance that is used */
 };
 
-/* Unknowns of one cell: x, y, z and e of four control points and of those that modes reach to. */
+/*
+ * Unknowns of one control point: x, y, z of w, e, and x, y, z of each stray tool. What a tool does goes with points of w
+ * before it: its point j is kept with point j + 2 modes of w, the last that it goes with.
+ */
+static inline size_t problem_each(const struct problem *p)
+{
+    return 4 + 3 * (size_t)p->strays;
+}
+
+/* Unknowns of one cell: of four control points and of those that modes reach to. */
 static inline size_t problem_unknowns(const struct problem *p)
 {
-    return 4 * (4 + 2 * (size_t)p->modes);
+    return problem_each(p) * (4 + 2 * (size_t)p->modes);
 }
 
 /* Sets the rows of p, for p->cells intervals; place_mm: of every half knot from 2 first on. */

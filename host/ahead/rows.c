@@ -82,9 +82,19 @@ static void feed_of(const struct problem_cell *cell, const double z[CELL_UNKNOWN
         velocity[i] += cell->feed_now[i];
 }
 
-void rows_value(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
-                double c[CELL_ROWS])
+static double ball_value(const struct problem_ball *ball, const double z[CELL_UNKNOWNS])
 {
+    double place[3];
+
+    if (!(ball->radius_mm > 0))
+        return 1;
+    ball_place(ball, z, place);
+    return 0.5 * (1 - vector_dot(place, place));
+}
+
+void rows_value(const struct problem *p, size_t at, const struct rows_at *z, double c[ROWS_MAX])
+{
+    const struct problem_cell *cell = &p->cell[at];
     double *row = c;
 
     for (int axis = 0; axis < 3; axis++) {
@@ -104,18 +114,14 @@ void rows_value(const struct problem *p, const struct problem_cell *cell, const 
         *row = 0.5 * (1 - vector_dot(velocity, velocity));
     }
     row++;
-    for (int i = 0; i < CELL_BALLS; i++) {
-        double place[3];
-
-        *row = 1;
-        if (cell->ball[i].radius_mm > 0) {
-            ball_place(&cell->ball[i], z->tool, place);
-            *row = 0.5 * (1 - vector_dot(place, place));
-        }
-        row++;
-    }
+    for (int i = 0; i < CELL_BALLS; i++)
+        *row++ = ball_value(&cell->ball[i], z->tool);
     *row++ = TIME_HIGH - z->motor[15];
-    *row = TIME_LOW + z->motor[15];
+    *row++ = TIME_LOW + z->motor[15];
+    for (size_t s = 0; s < p->strays; s++) {
+        for (int i = 0; i < STRAY_BALLS; i++)
+            *row++ = ball_value(&p->stray[at][s].ball[i], z->stray[s]);
+    }
 }
 
 static double ball_product(const struct problem_ball *ball, const double z[CELL_UNKNOWNS],
@@ -124,14 +130,17 @@ static double ball_product(const struct problem_ball *ball, const double z[CELL_
     double place[3];
     double move[3];
 
+    if (!(ball->radius_mm > 0))
+        return 0;
     ball_place(ball, z, place);
     ball_move(ball, dz, move);
     return vector_dot(place, move) / ball->radius_mm;
 }
 
-void rows_product(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
-                  const struct rows_at *dz, double product[CELL_ROWS])
+void rows_product(const struct problem *p, size_t at, const struct rows_at *z,
+                  const struct rows_at *dz, double product[ROWS_MAX])
 {
+    const struct problem_cell *cell = &p->cell[at];
     double *row = product;
 
     for (int axis = 0; axis < 3; axis++) {
@@ -154,9 +163,13 @@ void rows_product(const struct problem *p, const struct problem_cell *cell, cons
     }
     row++;
     for (int i = 0; i < CELL_BALLS; i++)
-        *row++ = cell->ball[i].radius_mm > 0 ? ball_product(&cell->ball[i], z->tool, dz->tool) : 0;
+        *row++ = ball_product(&cell->ball[i], z->tool, dz->tool);
     *row++ = dz->motor[15];
-    *row = -dz->motor[15];
+    *row++ = -dz->motor[15];
+    for (size_t s = 0; s < p->strays; s++) {
+        for (int i = 0; i < STRAY_BALLS; i++)
+            *row++ = ball_product(&p->stray[at][s].ball[i], z->stray[s], dz->stray[s]);
+    }
 }
 
 static void add_ball(const struct problem_ball *ball, const double z[CELL_UNKNOWNS], double v,
@@ -164,6 +177,8 @@ static void add_ball(const struct problem_ball *ball, const double z[CELL_UNKNOW
 {
     double place[3];
 
+    if (!(ball->radius_mm > 0))
+        return;
     ball_place(ball, z, place);
     for (int k = 0; k < 4; k++) {
         for (int i = 0; i < 3; i++)
@@ -184,9 +199,10 @@ static void add_velocity(const struct problem_cell *cell, const double z[CELL_UN
     }
 }
 
-void rows_transpose(const struct problem *p, const struct problem_cell *cell,
-                    const struct rows_at *z, const double v[CELL_ROWS], const struct rows_sum *b)
+void rows_transpose(const struct problem *p, size_t at, const struct rows_at *z,
+                    const double v[ROWS_MAX], const struct rows_sum *b)
 {
+    const struct problem_cell *cell = &p->cell[at];
     const double *row = v;
 
     for (int axis = 0; axis < 3; axis++) {
@@ -203,11 +219,14 @@ void rows_transpose(const struct problem *p, const struct problem_cell *cell,
     if (cell->feed_scale > 0)
         add_velocity(cell, z->motor, *row, b->motor);
     row++;
-    for (int i = 0; i < CELL_BALLS; i++, row++) {
-        if (cell->ball[i].radius_mm > 0)
-            add_ball(&cell->ball[i], z->tool, *row, b->tool);
-    }
+    for (int i = 0; i < CELL_BALLS; i++)
+        add_ball(&cell->ball[i], z->tool, *row++, b->tool);
     b->motor[15] += row[0] - row[1];
+    row += 2;
+    for (size_t s = 0; s < p->strays; s++) {
+        for (int i = 0; i < STRAY_BALLS; i++)
+            add_ball(&p->stray[at][s].ball[i], z->stray[s], *row++, b->stray[s]);
+    }
 }
 
 /* k += w g g^T of one axis's row: g is a of the axis's unknowns and b of e's. */
@@ -283,6 +302,8 @@ static void add_ball_square(const struct problem_ball *ball, const double z[CELL
     double place[3];
     double block[3][3];
 
+    if (!(ball->radius_mm > 0))
+        return;
     ball_place(ball, z, place);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
@@ -301,16 +322,22 @@ static void add_ball_square(const struct problem_ball *ball, const double z[CELL
     }
 }
 
-void rows_normal(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
-                 const double w[CELL_ROWS], const double m[CELL_ROWS], const struct rows_square *k)
+void rows_normal(const struct problem *p, size_t at, const struct rows_at *z,
+                 const double w[ROWS_MAX], const double m[ROWS_MAX], const struct rows_square *k)
 {
+    const struct problem_cell *cell = &p->cell[at];
     for (int axis = 0; axis < 3; axis++)
         add_axis(p, cell, axis, w + ROWS_AXIS + (size_t)2 * FORM_COUNT * (size_t)axis, k->motor);
     if (cell->feed_scale > 0)
         add_feed(cell, z->motor, w[ROWS_FEED], m[ROWS_FEED], k->motor);
-    for (int i = 0; i < CELL_BALLS; i++) {
-        if (cell->ball[i].radius_mm > 0)
-            add_ball_square(&cell->ball[i], z->tool, w[ROWS_BALL + i], m[ROWS_BALL + i], k->tool);
-    }
+    for (int i = 0; i < CELL_BALLS; i++)
+        add_ball_square(&cell->ball[i], z->tool, w[ROWS_BALL + i], m[ROWS_BALL + i], k->tool);
     k->motor[15][15] += w[ROWS_TIME] + w[ROWS_TIME + 1];
+    for (size_t s = 0; s < p->strays; s++) {
+        for (size_t i = 0; i < STRAY_BALLS; i++) {
+            const size_t row = CELL_ROWS + s * STRAY_BALLS + i;
+
+            add_ball_square(&p->stray[at][s].ball[i], z->stray[s], w[row], m[row], k->stray[s]);
+        }
+    }
 }

@@ -12,6 +12,13 @@ enum { ROWS_FEED = 3 * FORM_COUNT * 2 };
 #define ROWS_BALL (ROWS_FEED + 1)
 #define ROWS_TIME (ROWS_BALL + CELL_BALLS)
 #define CELL_ROWS (ROWS_TIME + 2)
+/* And the balls of stray tools, behind them. */
+#define ROWS_MAX (CELL_ROWS + MODES_STRAYS * STRAY_BALLS)
+
+static inline int rows_count(const struct problem *p)
+{
+    return CELL_ROWS + (int)p->strays * STRAY_BALLS;
+}
 
 /* What the rows are on: of four control points x, y, z and e. */
 #define CELL_UNKNOWNS 16
@@ -22,31 +29,33 @@ enum { ROWS_FEED = 3 * FORM_COUNT * 2 };
  */
 struct rows_at {
     const double *motor, *tool; /* CELL_UNKNOWNS each */
+    const double *stray[MODES_STRAYS];
 };
 
 struct rows_sum {
     double *motor, *tool;
+    double *stray[MODES_STRAYS];
 };
 
 struct rows_square {
     double (*motor)[CELL_UNKNOWNS];
     double (*tool)[CELL_UNKNOWNS];
+    double (*stray[MODES_STRAYS])[CELL_UNKNOWNS];
 };
 
 /* c(z) of every row: > 0 inside. Rows that do not apply are 1. */
-void rows_value(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
-                double c[CELL_ROWS]);
+void rows_value(const struct problem *p, size_t cell, const struct rows_at *z, double c[ROWS_MAX]);
 
 /* G dz of every row, G = -dc/dz at z. */
-void rows_product(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
-                  const struct rows_at *dz, double product[CELL_ROWS]);
+void rows_product(const struct problem *p, size_t cell, const struct rows_at *z,
+                  const struct rows_at *dz, double product[ROWS_MAX]);
 
 /* b += G^T v */
-void rows_transpose(const struct problem *p, const struct problem_cell *cell,
-                    const struct rows_at *z, const double v[CELL_ROWS], const struct rows_sum *b);
+void rows_transpose(const struct problem *p, size_t cell, const struct rows_at *z,
+                    const double v[ROWS_MAX], const struct rows_sum *b);
 
 /* The lower triangle of k += G^T W G + sum_i m_i (second derivative of -c_i). */
-void rows_normal(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
-                 const double w[CELL_ROWS], const double m[CELL_ROWS], const struct rows_square *k);
+void rows_normal(const struct problem *p, size_t cell, const struct rows_at *z,
+                 const double w[ROWS_MAX], const double m[ROWS_MAX], const struct rows_square *k);
 
 #endif

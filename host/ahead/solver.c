@@ -77,14 +77,16 @@ struct solver {
     size_t done; /* jobs of the first core in this round */
 };
 
-static bool bench_allocate(struct bench *b, unsigned modes)
+static bool bench_allocate(struct bench *b, const struct ahead_modes *modes)
 {
     b->interior = interior_new(WINDOW_MAX, modes);
     b->problem.cell = calloc(WINDOW_MAX, sizeof *b->problem.cell);
-    b->problem.map = modes > 0 ? calloc(WINDOW_MAX, sizeof *b->problem.map) : NULL;
+    b->problem.map = modes->count > 0 ? calloc(WINDOW_MAX, sizeof *b->problem.map) : NULL;
+    b->problem.stray = modes->strays > 0 ? calloc(WINDOW_MAX, sizeof *b->problem.stray) : NULL;
     b->slow = calloc(WINDOW_MAX, sizeof *b->slow);
     return b->interior != NULL && b->problem.cell != NULL && b->slow != NULL &&
-           (modes == 0 || b->problem.map != NULL);
+           (modes->count == 0 || b->problem.map != NULL) &&
+           (modes->strays == 0 || b->problem.stray != NULL);
 }
 
 static void bench_free(struct bench *b)
@@ -92,10 +94,11 @@ static void bench_free(struct bench *b)
     interior_free(b->interior);
     free(b->problem.cell);
     free(b->problem.map);
+    free(b->problem.stray);
     free(b->slow);
 }
 
-struct solver *solver_new(unsigned workers, unsigned modes)
+struct solver *solver_new(unsigned workers, const struct ahead_modes *modes)
 {
     struct solver *s = calloc(1, sizeof *s);
     bool done = s != NULL;
@@ -145,6 +148,7 @@ static bool copy_piece(const struct solver *s, size_t first, size_t intervals, s
     memcpy(to->control, from->control + first,
            (intervals + trail_ends(from->modes)) * sizeof *to->control);
     memcpy(to->place_mm, from->place_mm + 2 * first, (2 * intervals + 1) * sizeof *to->place_mm);
+    trail_continue(to, from, first, intervals);
     trail_follow(to, &s->limits->modes);
     return true;
 }
@@ -298,6 +302,7 @@ static bool join(struct solver *s)
         at += r->intervals;
         trail_free(r);
     }
+    joined.rest = s->trail->rest;
     trail_follow(&joined, &s->limits->modes);
     trail_free(s->trail);
     *s->trail = joined;

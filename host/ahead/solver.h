@@ -29,7 +29,7 @@ enum solver_result {
 struct solver;
 
 /* Memory for so many cores. NULL: out of memory. */
-struct solver *solver_new(unsigned workers, unsigned modes);
+struct solver *solver_new(unsigned workers, const struct ahead_modes *modes);
 void solver_free(struct solver *s);
 
 /*

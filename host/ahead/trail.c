@@ -1,5 +1,7 @@
 #include "ahead/trail.h"
 
+#include "ahead/vector.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +14,9 @@ static bool allocate_sides(struct trail *t)
     }
     t->motor = calloc(t->intervals + TRAIL_ENDS, sizeof *t->motor);
     t->tool = calloc(t->intervals + TRAIL_ENDS, sizeof *t->tool);
-    return t->motor != NULL && t->tool != NULL;
+    for (size_t s = 0; s < MODES_STRAYS; s++)
+        t->stray[s] = calloc(t->intervals + TRAIL_ENDS, sizeof *t->stray[s]);
+    return t->motor != NULL && t->tool != NULL && t->stray[0] != NULL && t->stray[1] != NULL;
 }
 
 bool trail_allocate(struct trail *t, size_t intervals, unsigned modes)
@@ -32,11 +36,40 @@ void trail_free(struct trail *t)
     if (t->modes > 0) {
         free(t->motor);
         free(t->tool);
+        for (size_t s = 0; s < MODES_STRAYS; s++)
+            free(t->stray[s]);
     }
     free(t->control);
     free(t->place_mm);
     free(t->beyond);
     *t = (struct trail){0};
+}
+
+/* The recursion of modes.h. */
+static void swing(struct trail *t, const struct modes_stray *as, size_t s, int axis)
+{
+    double before = t->swing[s][0][axis];
+    double here = t->swing[s][1][axis];
+
+    t->stray[s][0][axis] = t->motor[0][axis] + before;
+    t->stray[s][1][axis] = t->motor[1][axis] + here;
+    for (size_t k = 2; k < t->intervals + TRAIL_ENDS; k++) {
+        const double bend = t->motor[k][axis] - 2 * t->motor[k - 1][axis] + t->motor[k - 2][axis];
+        const double next = as->trace * here - as->determinant * before - as->pull * bend;
+
+        t->stray[s][k][axis] = t->motor[k][axis] + next;
+        before = here;
+        here = next;
+    }
+}
+
+void trail_continue(struct trail *to, const struct trail *from, size_t first, size_t intervals)
+{
+    to->rest = first + intervals == from->intervals ? from->rest : 0;
+    for (size_t s = 0; s < MODES_STRAYS && from->modes > 0; s++) {
+        for (size_t k = 0; k < 2; k++)
+            vector_from_to(from->motor[first + k], from->stray[s][first + k], to->swing[s][k]);
+    }
 }
 
 void trail_follow(struct trail *t, const struct ahead_modes *modes)
@@ -51,17 +84,24 @@ void trail_follow(struct trail *t, const struct ahead_modes *modes)
             t->tool[k][i] = tool.at_mm;
         }
     }
+    for (size_t s = 0; s < modes->strays && t->modes > 0; s++) {
+        for (int i = 0; i < 3; i++)
+            swing(t, &modes->stray[s][i], s, i);
+    }
 }
 
 bool trail_soften(struct trail *t, const struct ahead_modes *modes)
 {
     const size_t more = 2 * (size_t)modes->count; /* control points at each end */
     const size_t last = t->intervals + TRAIL_ENDS - 1;
+    /* So that they show it in points that may change. */
+    const size_t rest = modes->strays > 0 ? modes->rest + trail_ends(modes->count) : 0;
     struct trail soft;
 
-    if (!trail_allocate(&soft, t->intervals + more, modes->count))
+    if (!trail_allocate(&soft, t->intervals + more + rest, modes->count))
         return false;
-    for (size_t k = 0; k <= last + 2 * more; k++) {
+    soft.rest = rest;
+    for (size_t k = 0; k <= last + 2 * more + soft.rest; k++) {
         const size_t from = k < more ? 0 : k - more < last ? k - more : last;
 
         memcpy(soft.control[k], t->control[from], sizeof t->control[from]);
@@ -119,7 +159,7 @@ void trail_sum(double (*control)[3], const double weight[4], double sum[3])
                  weight[3] * control[3][i];
 }
 
-void trail_at(const struct trail *t, double u, double point[3])
+void trail_at(const struct trail *t, double (*control)[3], double u, double point[3])
 {
     size_t k = (size_t)u;
     double weight[4];
@@ -127,5 +167,5 @@ void trail_at(const struct trail *t, double u, double point[3])
     if (k >= t->intervals)
         k = t->intervals - 1;
     trail_weights(u - (double)k, weight);
-    trail_sum(t->tool + k, weight, point);
+    trail_sum(control + k, weight, point);
 }

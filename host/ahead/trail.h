@@ -27,8 +27,12 @@ struct trail {
     double (*control)[3]; /* of w: intervals + trail_ends, mm; owned */
     double (*motor)[3];   /* intervals + 3, mm; owned if there are modes, else control */
     double (*tool)[3];    /* likewise */
-    double *place_mm;     /* along the path, at every half knot: 2 intervals + 1; owned */
-    double *beyond;       /* of every interval, by excess_measure; owned */
+    /* The tool where the machine's modes are others (modes.h), if there are modes; and how the first two points of it swing. */
+    double (*stray[MODES_STRAYS])[3];
+    double swing[MODES_STRAYS][2][3];
+    size_t rest;      /* knots at its end in which all rests but stray tools */
+    double *place_mm; /* along the path, at every half knot: 2 intervals + 1; owned */
+    double *beyond;   /* of every interval, by excess_measure; owned */
 };
 
 /* Control points of w that fix what motors and tool do at an end, with so many modes. */
@@ -44,6 +48,9 @@ void trail_free(struct trail *t);
 /* A curve of a stiff machine's, from rest to rest, becomes one of these modes: it rests longer at its ends. False: out of memory. */
 bool trail_soften(struct trail *t, const struct ahead_modes *modes);
 
+/* to is for intervals of from, from `first` on: it swings and rests as that does. */
+void trail_continue(struct trail *to, const struct trail *from, size_t first, size_t intervals);
+
 /* What motors and tool do when the curve is what it is. */
 void trail_follow(struct trail *t, const struct ahead_modes *modes);
 
@@ -56,7 +63,7 @@ void trail_slopes(double f, double weight[4]);
 
 /* The sum of four control points with weights. */
 void trail_sum(double (*control)[3], const double weight[4], double sum[3]);
-/* The tool's curve at knot u, 0 <= u <= intervals. */
-void trail_at(const struct trail *t, double u, double point[3]);
+/* The tool's curve or a stray tool's at knot u, 0 <= u <= intervals. */
+void trail_at(const struct trail *t, double (*control)[3], double u, double point[3]);
 
 #endif

@@ -230,7 +230,7 @@ static void find_feet(const struct ahead_path *path, struct trail *t)
         struct ahead_closest closest;
         double x[3];
 
-        trail_at(t, 0.5 * (double)site, x);
+        trail_at(t, t->tool, 0.5 * (double)site, x);
         ahead_path_closest(path, x, t->place_mm[site], reach_mm, hint, &closest);
         hint = closest.element;
         last_mm = maths_max(last_mm, closest.place_mm);
@@ -312,6 +312,7 @@ bool warp_window(const struct problem_window *w, size_t cells, double (*change)[
         done = timed ? take_warped(&a, result) : take_moved(&a, result);
     }
     if (done) {
+        trail_continue(result, w->trail, w->first, cells);
         trail_follow(result, &w->limits->modes);
         find_feet(w->path, result);
     }

@@ -25,7 +25,10 @@ struct compiled_figures {
     double at_velocity, at_acceleration,
         at_jerk; /* share of cycles in which an axis is at that limit */
     struct tube_figures tube;
-    bool of_tool;      /* the tube's figures are the tool's: the machine has modes */
+    bool of_tool;   /* the tube's figures are the tool's: the machine has modes */
+    bool of_strays; /* the modes' frequencies are uncertain: */
+    struct tube_figures
+        stray[2];      /* the tool's where they are lower, and higher, by what they may be */
     char why[160];     /* refused: what is not kept, */
     uint32_t why_line; /* of this line; 0: of the whole */
 };

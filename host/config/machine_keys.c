@@ -445,6 +445,8 @@ const struct machine_key machine_keys[] = {
     OF_VIBRATION("mode_x", AXIS_X, "how X swings between motor and tool: frequency Hz, damping ratio, part of it that the tool sees (1: all); and the same of a second mode"),
     OF_VIBRATION("mode_y", AXIS_Y, "likewise"),
     OF_VIBRATION("mode_z", AXIS_Z, "likewise"),
+    VECTOR(SECTION_GEOMETRY, "mode_uncertainty_percent", SCALE_NONE, IN_SETUP(vibration.uncertain_percent), AXIS_LINEAR_COUNT, 0, 50,
+           "by so much the frequencies of X, Y, Z may be others: what is planned ahead keeps the tool within 3 P then; 0: they are known"),
     OF_SWING("x", AXIS_X),
     OF_SWING("y", AXIS_Y),
     OF_SWING("z", AXIS_Z),

@@ -67,8 +67,11 @@ struct shape *shaper_prepare(const struct machine_setup *setup, struct shape *s)
 void shaper_planned_modes(const struct machine_setup *setup, struct vibration_config *modes)
 {
     memset(modes, 0, sizeof *modes);
-    if (setup->shaper == SHAPER_NONE)
-        memcpy(modes->mode, setup->vibration.mode, sizeof modes->mode);
+    if (setup->shaper != SHAPER_NONE)
+        return;
+    memcpy(modes->mode, setup->vibration.mode, sizeof modes->mode);
+    memcpy(modes->uncertain_percent, setup->vibration.uncertain_percent,
+           sizeof modes->uncertain_percent);
 }
 
 void shaper_plan_limits(const struct machine_setup *setup, struct plan_limits *limits)

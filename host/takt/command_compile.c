@@ -33,6 +33,10 @@ static void print_figures(const struct session *s, const struct compiled_figures
     (void)printf("  %s at most %.6f mm off the path, its corners %.6f mm off the %s\n",
                  f->of_tool ? "tool" : "setpoints", f->tube.deviation_mm, f->tube.corner_mm,
                  f->of_tool ? "tool" : "setpoints");
+    if (f->of_strays)
+        (void)printf("  tool at most %.6f mm off it where modes are as much lower as they may be, "
+                     "%.6f mm where higher\n",
+                     f->stray[0].deviation_mm, f->stray[1].deviation_mm);
 }
 
 static enum command_status compile_into(const struct session *s,

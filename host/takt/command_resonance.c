@@ -50,6 +50,21 @@ static void write_axis(FILE *file, const struct resonance_fit *fit, unsigned axi
     (void)fputc('\n', file);
 }
 
+/* Two standard deviations of the first mode's frequency; with two modes none is planned for. */
+static double uncertain_percent(const struct resonance_fit *fit)
+{
+    return fit->modes == 1 ? 100 * 2 * fit->mode[0].hz.deviation / fit->mode[0].hz.value : 0;
+}
+
+/* To be taken, or raised by what the machine changes by itself: it costs time, so it is a remark. */
+static void write_uncertain(FILE *file, const struct resonance_test *test)
+{
+    (void)fputs("# mode_uncertainty_percent =", file);
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        (void)fprintf(file, " %.2g", test->is_measured[i] ? uncertain_percent(&test->fit[i]) : 0);
+    (void)fputc('\n', file);
+}
+
 static enum command_status write(const struct resonance_test *test, const char *path)
 {
     static struct output_file file;
@@ -62,6 +77,7 @@ static enum command_status write(const struct resonance_test *test, const char *
         if (test->is_measured[i])
             write_axis(file.stream, &test->fit[i], i);
     }
+    write_uncertain(file.stream, test);
     if (output_file_finish(&file) && output_file_place(&file))
         status = STATUS_DONE;
     output_file_discard(&file);

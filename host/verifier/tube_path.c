@@ -107,6 +107,7 @@ void tube_path_init(struct tube_path *p, const struct program_config *program,
     takt_program_open(&p->program, program, source);
     takt_cutter_compensation_open(&p->offset, program);
     p->exact_mm = exact_mm;
+    p->tolerances = 1;
     p->end = program->start;
     append_point(p);
 }
@@ -149,7 +150,7 @@ static double straight_length(const struct tube_motion *m, double at_mm)
 static bool take_motion(struct tube_path *p, const struct move *move, const struct curve *curve)
 {
     const bool rounded = move->path == PATH_BLEND && move->tolerance_mm > 0;
-    const double tolerance_mm = rounded ? move->tolerance_mm : p->exact_mm;
+    const double tolerance_mm = rounded ? p->tolerances * move->tolerance_mm : p->exact_mm;
 
     struct tube_motion motion = {
         .curve = *curve,

@@ -54,6 +54,7 @@ struct tube_path {
     struct program program;
     struct cutter_compensation offset;
     double exact_mm;            /* what exact motions may be off */
+    double tolerances;          /* and others, P; 1 from the start */
     bool ended;                 /* there are no more motions */
     bool failed;                /* out of memory */
     struct point end;           /* of what has been read */

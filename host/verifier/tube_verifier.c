@@ -63,6 +63,11 @@ void tube_verifier_init(struct tube_verifier *t, const struct program_config *pr
     t->before = program->start;
 }
 
+void tube_verifier_widen(struct tube_verifier *t, double tolerances)
+{
+    t->path.tolerances = tolerances;
+}
+
 void tube_verifier_free(struct tube_verifier *t)
 {
     tube_path_free(&t->path);

@@ -49,6 +49,8 @@ struct tube_verifier {
 /* exact_mm: what motions in exact path may be off. source: its context stays the caller's. */
 void tube_verifier_init(struct tube_verifier *t, const struct program_config *program,
                         const struct source *source, double exact_mm);
+/* Before the first setpoint: motions within a tolerance may be off so many of it. */
+void tube_verifier_widen(struct tube_verifier *t, double tolerances);
 void tube_verifier_free(struct tube_verifier *t);
 /* The next setpoint, and the motion it is said to be of. False: out of memory. */
 bool tube_verifier_add(struct tube_verifier *t, const struct point *setpoint, uint32_t motion);

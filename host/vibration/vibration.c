@@ -13,6 +13,8 @@
 #define RATIO_MIN 0.1
 #define RATIO_MAX 10.0
 
+#define UNCERTAIN_MAX_PERCENT 50.0
+
 static const char *check_mode(const double number[VIBRATION_NUMBERS])
 {
     if (!(number[VIBRATION_HZ] >= 0 && number[VIBRATION_HZ] <= HZ_MAX))
@@ -93,6 +95,17 @@ static const char *check_across(const struct vibration_config *config, unsigned 
                : NULL;
 }
 
+static const char *check_uncertain(const struct vibration_config *config, unsigned axis)
+{
+    const double percent = config->uncertain_percent[axis];
+
+    if (!(percent >= 0 && percent <= UNCERTAIN_MAX_PERCENT))
+        return "what a frequency is uncertain by is 0 to 50 %";
+    if (percent > 0 && has_mode(config, axis, 1))
+        return "of an axis with two modes no mode_uncertainty_percent is planned for: it is 0";
+    return NULL;
+}
+
 static const char *check_axis(const struct vibration_config *config, unsigned axis)
 {
     const char *wrong = check_modes(config, axis);
@@ -101,6 +114,8 @@ static const char *check_axis(const struct vibration_config *config, unsigned ax
         wrong = check_places(&config->table[axis]);
     for (unsigned n = 0; n < VIBRATION_MODES && wrong == NULL; n++)
         wrong = check_ratios(config, axis, n);
+    if (wrong == NULL)
+        wrong = check_uncertain(config, axis);
     return wrong != NULL ? wrong : check_across(config, axis);
 }
 
@@ -176,6 +191,24 @@ static void set_advance(struct vibration_mode *mode, double ratio, double cycle_
     mode->advance[0][1] /= w;
     mode->advance[1][0] *= w;
     mode->ratio = ratio;
+}
+
+bool vibration_is_uncertain(const struct vibration_config *config)
+{
+    bool any = false;
+
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        any = any || (config->uncertain_percent[i] > 0 && has_mode(config, i, 0));
+    return any;
+}
+
+void vibration_shift(struct vibration_config *config, double part)
+{
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        for (unsigned n = 0; n < VIBRATION_MODES; n++)
+            config->mode[i][n * VIBRATION_NUMBERS + VIBRATION_HZ] *=
+                1 + 0.01 * part * config->uncertain_percent[i];
+    }
 }
 
 void vibration_init(struct vibration *v, const struct vibration_config *config, double cycle_s)

@@ -32,6 +32,8 @@ struct vibration_table {
 
 struct vibration_config {
     double mode[AXIS_LINEAR_COUNT][VIBRATION_MODES * VIBRATION_NUMBERS];
+    /* By so much the frequencies may be others than told: for planning ahead; what swings does not know of it. */
+    double uncertain_percent[AXIS_LINEAR_COUNT];
     struct vibration_table table[AXIS_LINEAR_COUNT]; /* of the modes of this axis */
     /* Along which other axes the tool goes when this one swings: parts of how far it does. Its own is 0. */
     double across[AXIS_LINEAR_COUNT][AXIS_LINEAR_COUNT];
@@ -62,6 +64,12 @@ struct vibration {
 
 /* NULL: good; else what is wrong with the modes of *axis. */
 const char *vibration_check(const struct vibration_config *config, unsigned *axis);
+
+/* Is the frequency of any mode? */
+bool vibration_is_uncertain(const struct vibration_config *config);
+
+/* Makes the frequencies higher by this part of what they are uncertain by. */
+void vibration_shift(struct vibration_config *config, double part);
 
 /* config has passed the check. Everything rests where the drives are first. */
 void vibration_init(struct vibration *v, const struct vibration_config *config, double cycle_s);

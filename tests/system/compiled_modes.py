@@ -127,6 +127,18 @@ for number in range(FIRST, FIRST + PROGRAMS):
     done, _, err = t.run("run", "part.ngc", "--plan", "shaped.plan", *shaped)
     t.check(done == 0, "and its run is judged by the way it was sent on", about, err)
 
+# Where the frequency is known to a tenth, the tool keeps three tolerances at either end of that.
+path_mm, machine = make(FIRST)
+unsure = [*options([(25, 0.03)] * 3), "--set", "geometry.mode_uncertainty_percent=10 10 10"]
+done, text, why = t.run("compile", "part.ngc", "-o", "unsure.plan", *unsure)
+t.check(done == 0 and "where modes are" in text, "a program is planned for uncertain modes", text, why)
+for ratio in (0.9, 1, 1.1):
+    _, _, motors, blocks, _ = run("unsure.plan", [(25 * ratio, 0.03)] * 3)
+    off = off_path(tool_of(motors, [(25 * ratio, 0.03)] * 3), blocks, path_mm)
+    t.check(off <= (1.01 if ratio == 1 else 3) * TOLERANCE_MM, "and the tool keeps three tolerances, as known one", ratio, off)
+done, _, err = t.run("compile", "part.ngc", "-o", "none.plan", *unsure, "--set", "geometry.mode_x=25 0.03 1 60 0.03 1")
+t.check(done == 2 and "mode_uncertainty_percent" in err, "of two modes of an axis this is refused", done, err)
+
 # In exact path a line ends in a rest in which nothing swings: else the next one would not be straight.
 swings = options([(25, 0.03)] * 3)
 t.write("exact.ngc", "G21 G90 G61\nF6000\nG1 X20\nG1 Y20\nG4 P0.1\nM2\n")

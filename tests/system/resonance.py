@@ -53,6 +53,11 @@ for seed in range(MACHINES):
         t.check(abs(p - part) < 0.1, f"seed {seed}: and its part", true, out)
 print(f"{MACHINES} machines: frequency off by {100 * worst[0]:.2f} % at most, damping by {100 * worst[1]:.1f} %")
 
+# What the frequency is uncertain by stands ready for the machine file, two standard deviations in per cent.
+out, got = found("--axes", "X", "--set", "geometry.mode_x=30 0.05 1 0 0 0", "--noise", "500")
+percent = [float(x) for x in re.search(r"# mode_uncertainty_percent = (.*)", out)[1].split()]
+t.check(abs(percent[0] - 100 * got[0][1][1] / got[0][1][0]) < 0.1 * percent[0] and percent[1:] == [0, 0], "uncertainty of the frequency", out)
+
 # More noise is less sure, and nothing is seen in noise alone.
 sure = ["--axes", "X", "--set", "geometry.mode_x=30 0.05 1 0 0 0"]
 spans = [found(*sure, "--noise", noise)[1][0][1][1] for noise in ("20", "500")]

@@ -47,38 +47,88 @@ static void at_part(double (*control)[3], double f, double point[3])
     trail_sum(control, weight, point);
 }
 
-static void check_tool(const struct vibration_config *config)
+/* The curve of a tool against the machine that follows the motors; how far it is off them at most. */
+static double away_of(const struct trail *t, double (*curve)[3],
+                      const struct vibration_config *config)
 {
-    struct ahead_modes modes;
     struct vibration v;
-    struct trail t;
-    double most_away = 0;
+    double most_mm = 0;
 
-    modes_init(&modes, config, STEP_S, STEP_S / FINE);
     vibration_init(&v, config, STEP_S / FINE);
-    make_trail(&t, &modes);
     for (size_t n = 0; n < INTERVALS * FINE; n++) {
         const double f = (double)(n % FINE) / FINE;
         double motor[3];
         double tool[3];
         struct point real = {{0}};
 
-        at_part(t.motor + n / FINE, f, motor);
-        at_part(t.tool + n / FINE, f, tool);
+        at_part(t->motor + n / FINE, f, motor);
+        at_part(curve + n / FINE, f, tool);
         vector_copy(motor, real.at);
         vibration_follow(&v, &real);
         for (int i = 0; i < 3; i++) {
-            most_away = maths_max(most_away, maths_abs(tool[i] - motor[i]));
+            most_mm = maths_max(most_mm, maths_abs(tool[i] - motor[i]));
             TEST_ASSERT_DOUBLE_WITHIN(1e-4, real.at[i], tool[i]);
         }
     }
-    TEST_ASSERT_TRUE(most_away > 0.01);
+    return most_mm;
+}
+
+static void check_tool(const struct vibration_config *config)
+{
+    struct ahead_modes modes;
+    struct trail t;
+
+    modes_init(&modes, config, STEP_S, STEP_S / FINE);
+    make_trail(&t, &modes);
+    TEST_ASSERT_TRUE(away_of(&t, t.tool, config) > 0.01);
     trail_free(&t);
 }
 
 static void test_the_tool_goes_where_the_machine_has_it(void)
 {
     check_tool(&one);
+}
+
+/* Where its frequencies are others, what swings is another machine's. */
+static void test_a_stray_tool_goes_where_a_machine_of_other_modes_has_it(void)
+{
+    for (int s = 0; s < MODES_STRAYS; s++) {
+        struct vibration_config config = one;
+        struct ahead_modes modes;
+        struct trail t;
+
+        for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
+            config.uncertain_percent[i] = 10;
+        modes_init(&modes, &config, STEP_S, STEP_S / FINE);
+        TEST_ASSERT_EQUAL_UINT(MODES_STRAYS, modes.strays);
+        vibration_shift(&config, s == 0 ? -1 : 1);
+        make_trail(&t, &modes);
+        TEST_ASSERT_TRUE(away_of(&t, t.stray[s], &config) > 0.01);
+        trail_free(&t);
+    }
+}
+
+/* A piece of a trail swings as the whole of it. */
+static void test_a_piece_swings_on(void)
+{
+    const size_t first = 70;
+    struct vibration_config config = one;
+    struct ahead_modes modes;
+    struct trail t;
+    struct trail piece;
+
+    config.uncertain_percent[0] = 10;
+    modes_init(&modes, &config, STEP_S, STEP_S);
+    make_trail(&t, &modes);
+    TEST_ASSERT_TRUE(trail_allocate(&piece, INTERVALS - first, modes.count));
+    memcpy(piece.control, t.control + first,
+           (piece.intervals + trail_ends(modes.count)) * sizeof *t.control);
+    trail_continue(&piece, &t, first, piece.intervals);
+    trail_follow(&piece, &modes);
+    for (size_t k = 0; k < piece.intervals + TRAIL_ENDS; k++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, t.stray[0][first + k][0], piece.stray[0][k][0]);
+    trail_free(&piece);
+    trail_free(&t);
 }
 
 static void test_so_it_does_with_two_modes(void)
@@ -178,6 +228,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_tool_goes_where_the_machine_has_it);
+    RUN_TEST(test_a_stray_tool_goes_where_a_machine_of_other_modes_has_it);
+    RUN_TEST(test_a_piece_swings_on);
     RUN_TEST(test_so_it_does_with_two_modes);
     RUN_TEST(test_where_the_curve_rests_motors_and_tool_do);
     RUN_TEST(test_a_change_of_time_is_known_to_first_order);

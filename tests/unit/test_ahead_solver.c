@@ -68,7 +68,7 @@ static void make_square(struct ahead_path *path, double side_mm)
 
 static struct trail solve(const struct ahead_path *path, unsigned workers)
 {
-    struct solver *s = solver_new(workers, 0);
+    struct solver *s = solver_new(workers, &limits.modes);
     struct trail t;
 
     TEST_ASSERT_NOT_NULL(s);
@@ -115,7 +115,7 @@ static void test_every_corner_is_passed_within_the_tolerance(void)
             double x[3];
             double way[3];
 
-            trail_at(&t, 0.05 * (double)i, x);
+            trail_at(&t, t.tool, 0.05 * (double)i, x);
             vector_from_to(path.element[k].curve.end.at, x, way);
             nearest = maths_min(nearest, vector_length(way));
         }
@@ -147,7 +147,7 @@ static void test_two_cores_find_the_same_bits_as_one(void)
  */
 static void test_the_place_where_it_is_stuck_is_on_the_path(void)
 {
-    struct solver *s = solver_new(1, 0);
+    struct solver *s = solver_new(1, &limits.modes);
     struct ahead_path path;
     struct trail t;
     size_t guessed;
