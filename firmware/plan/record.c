@@ -287,7 +287,6 @@ static void take_involute(const uint8_t **from, struct block *b)
 }
 
 /* -- writing -- */
-
 static unsigned flags_of(const struct block *b, bool spline, const struct record_chain *chain)
 {
     const struct move *m = &b->move;
@@ -383,7 +382,6 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
 }
 
 /* -- reading -- */
-
 enum move_kind takt_record_kind(const uint8_t *record)
 {
     return (enum move_kind)(record[AT_KIND] & KIND_MASK);

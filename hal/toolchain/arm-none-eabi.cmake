@@ -52,8 +52,8 @@ set(TAKT_FAST_OPTION -O2)
 if(TAKT_CPU STREQUAL cortex-m7)
   set(TAKT_FAST_OPTION -O3 --param=max-inline-insns-auto=60)
   list(APPEND TAKT_FAST_SOURCES canopen/sdo_client.c canopen/sync.c controller/approach.c controller/spindle_watch.c
-    canopen/cia402.c canopen/nmt.c drive/drives_home.c drive/drives_start.c plan/ceiling.c plan/ramp_profile.c plan/record.c
-    motion/landing.c plan/path.c plan/ring.c plan/span.c program/move.c)
+    canopen/cia402.c canopen/nmt.c drive/drives_home.c drive/drives_start.c plan/ceiling.c plan/ceiling_backward.c
+    plan/ramp_profile.c plan/record.c motion/landing.c plan/path.c plan/ring.c plan/span.c program/move.c)
 endif()
 # With little flash memory, those of them for size as well that gain least: 2 kB, and a cycle takes 1 to 2 % longer.
 if(TAKT_SMALL)

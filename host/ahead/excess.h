@@ -9,7 +9,7 @@
 /* The part of the tolerance that counts as kept at the places that are measured. */
 #define EXCESS_TOLERANCE_PART 0.985
 
-/* How far along the path a foot is looked for. */
+/* How far along the path a closest point is looked for. */
 #define EXCESS_REACH_MM 0.3
 
 /*
