@@ -1,6 +1,5 @@
 #include "accuracy/cycle_frequency.h"
 
-#include "base/assert.h"
 #include "base/maths.h"
 
 #include <stddef.h>

@@ -1,6 +1,5 @@
 #include "canopen/concise_dcf.h"
 
-#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/sdo_client.h"
 

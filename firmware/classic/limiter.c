@@ -1,6 +1,5 @@
 #include "classic/limiter.h"
 
-#include "base/assert.h"
 #include "base/maths.h"
 
 static double threshold(double velocity, double most)

@@ -1,7 +1,5 @@
 #include "correction/edge.h"
 
-#include "base/assert.h"
-
 double takt_edge_hold(double position, double last, unsigned *outside)
 {
     if (position >= 0.0 && position <= last) {

@@ -1,6 +1,5 @@
 #include "program/expression.h"
 
-#include "base/assert.h"
 #include "base/decimal.h"
 #include "base/maths.h"
 #include "program/calculation.h"

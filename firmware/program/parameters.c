@@ -1,7 +1,5 @@
 #include "program/parameters.h"
 
-#include "base/assert.h"
-
 #include <string.h>
 
 void takt_parameters_clear(struct parameters *p)
@@ -15,7 +13,6 @@ static unsigned position_of(const struct parameters *p, unsigned number)
     unsigned low = 0;
     unsigned high = p->count;
 
-    TAKT_ASSERT(p->count <= PARAMETERS_MAX);
     while (low < high) {
         const unsigned middle = (low + high) / 2;
 
@@ -35,7 +32,6 @@ static bool holds(const struct parameters *p, unsigned position, unsigned number
 
 double takt_parameters_get(const struct parameters *p, unsigned number)
 {
-    TAKT_ASSERT(number >= 1);
     if (number <= PARAMETERS_LOCAL) {
         return p->local[number - 1];
     }
@@ -46,7 +42,6 @@ double takt_parameters_get(const struct parameters *p, unsigned number)
 
 static void insert(struct parameters *p, unsigned position, unsigned number)
 {
-    TAKT_ASSERT(p->count < PARAMETERS_MAX && position <= p->count);
     for (unsigned i = p->count; i > position; i--) {
         p->number[i] = p->number[i - 1];
         p->value[i] = p->value[i - 1];
@@ -79,7 +74,6 @@ static bool make_room(struct parameters *p)
 
 bool takt_parameters_set(struct parameters *p, unsigned number, double value)
 {
-    TAKT_ASSERT(number >= 1);
     if (number <= PARAMETERS_LOCAL) {
         p->local[number - 1] = value;
         return true;

@@ -1,5 +1,6 @@
 #include "port/plan_queue.h"
 
+#include <assert.h>
 #include <string.h>
 
 void takt_plan_queue_init(struct plan_queue *q, const struct service *service)
@@ -85,7 +86,7 @@ static void why(void *context, char *text)
 {
     const struct plan_queue *q = context;
 
-    _Static_assert(DIAGNOSTIC_TEXT_MAX <= PANEL_ALARM_TEXT_MAX, "there is room for it");
+    static_assert(DIAGNOSTIC_TEXT_MAX <= PANEL_ALARM_TEXT_MAX, "there is room for it");
     if (q->why.code != TAKT_OK)
         (void)takt_diagnostic_text(&q->why, text);
 }

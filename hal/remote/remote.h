@@ -15,6 +15,7 @@
 #include "hal/inputs.h"
 #include "motion/cycle_record.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -89,7 +90,7 @@ struct remote_outputs {
     struct classical_frame frame[REMOTE_FRAMES_MAX];
 };
 
-_Static_assert(sizeof(struct inputs) == 88, "as on every side");
-_Static_assert(sizeof(struct cycle_record) == 200, "as on every side");
+static_assert(sizeof(struct inputs) == 88, "as on every side");
+static_assert(sizeof(struct cycle_record) == 200, "as on every side");
 
 #endif
