@@ -31,7 +31,7 @@ import linuxcnc
 SKIPPED = 77
 SOURCE = os.environ.get("TAKT_SOURCE") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 GOLDENS = os.path.join(SOURCE, "tests", "golden")
-DIFFERENCES = [os.path.join(SOURCE, "firmware", room, "README.md") for room in ("program", "offset")]
+DIFFERENCES = [os.path.join(SOURCE, "firmware", room, "README.md") for room in ("program", "cutter_compensation")]
 DIFFERENCES_TITLE = "## Where it differs from LinuxCNC"
 TOLERANCE_MM = 1e-6
 TOLERANCE_FEED = 1e-6
