@@ -44,7 +44,7 @@ def try_links(page):
     """Each of three kinds of mistakes in a page of a copy."""
     with open(page, encoding="utf-8") as file:
         text = file.read()
-    for link in ("laws.md#no-such-heading", "no_such_page.md", "no_such_source.c"):
+    for link in ("ramp_profiles.md#no-such-heading", "no_such_page.md", "no_such_source.c"):
         with open(page, "w", encoding="utf-8") as file:
             file.write(f"{text}\n[wrong]({link})\n")
         status, err = make("sources")
