@@ -11,7 +11,7 @@
  *     P = max_i D_i / (J_i cycle^2),  Q = max_i 3/4 K_i / (J_i cycle),  R = max_i D_i / (A_i cycle)
  *
  * a junction at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration limit. The blocks beside it
- * leave it that part (block.c): up to BLOCK_SHARE_MAX.
+ * leave it that part (block.c): up to BLOCK_JERK_BUDGET_MAX.
  *
  * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v cycle / 4 <= d over the
  * axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside what the axes can do. Where the motions have a

@@ -155,7 +155,7 @@ static bool is_at(double ratio)
 }
 
 /* Velocity, acceleration and jerk by differences, over their limits. */
-static void verifier_axes(struct trial *t, const struct point *cmd)
+static void verify_axes(struct trial *t, const struct point *cmd)
 {
     const double rate_hz = 1 / t->limits.cycle_s;
     bool at[3] = {false, false, false};
@@ -184,7 +184,7 @@ static void verifier_axes(struct trial *t, const struct point *cmd)
     t->at_jerk += at[2] ? 1 : 0;
 }
 
-static bool verifier_path(struct trial *t, const struct cycle_record *record)
+static bool verify_path(struct trial *t, const struct cycle_record *record)
 {
     struct point tool = record->cmd;
 
@@ -193,13 +193,13 @@ static bool verifier_path(struct trial *t, const struct cycle_record *record)
     return tube_verifier_add(&t->tube, &tool, record->block);
 }
 
-static bool verifier_cycle(struct trial *t, const struct cycle_record *record)
+static bool verify_cycle(struct trial *t, const struct cycle_record *record)
 {
-    verifier_axes(t, &record->cmd);
+    verify_axes(t, &record->cmd);
     t->out_of_order = t->out_of_order || record->block < t->block;
     t->block = record->block;
     t->figures->cycles++;
-    return !has_path(t) || verifier_path(t, record);
+    return !has_path(t) || verify_path(t, record);
 }
 
 /* MOTION_CYCLE: goes on. */
@@ -219,7 +219,7 @@ static enum motion_result cycle(struct trial *t, bool *good)
         result = MOTION_CYCLE;
     }
     if (result == MOTION_CYCLE)
-        *good = verifier_cycle(t, &record);
+        *good = verify_cycle(t, &record);
     return result;
 }
 
@@ -310,8 +310,8 @@ static enum command_status conclude(struct trial *t)
 }
 
 /* One replay at a rate; without a stream the planner on board instead. */
-static enum command_status verifier_at(const struct session *s, FILE *stream, double rate,
-                                       double stray, struct compiled_figures *figures)
+static enum command_status verify_at(const struct session *s, FILE *stream, double rate,
+                                     double stray, struct compiled_figures *figures)
 {
     struct trial *t = calloc(1, sizeof *t);
     enum command_status status;
@@ -349,8 +349,8 @@ static bool keeps_stray(struct compiled_figures *figures, int n)
 }
 
 /* The tool on machines of other modes. */
-static enum command_status verifier_strays(const struct session *s, FILE *stream,
-                                           struct compiled_figures *figures)
+static enum command_status verify_strays(const struct session *s, FILE *stream,
+                                         struct compiled_figures *figures)
 {
     struct vibration_config modes;
     enum command_status status = STATUS_DONE;
@@ -360,7 +360,7 @@ static enum command_status verifier_strays(const struct session *s, FILE *stream
     for (int n = 0; n < 2 && figures->of_strays && status == STATUS_DONE; n++) {
         struct compiled_figures other = {0};
 
-        status = verifier_at(s, stream, 1, n == 0 ? -1 : 1, &other);
+        status = verify_at(s, stream, 1, n == 0 ? -1 : 1, &other);
         figures->stray[n] = other.tube;
         if (status == STATUS_DONE && !keeps_stray(figures, n))
             status = STATUS_FAILED;
@@ -372,12 +372,12 @@ enum command_status compiled_verifier(const struct session *s, FILE *stream,
                                       struct compiled_figures *figures)
 {
     struct compiled_figures slow = {0};
-    enum command_status status = verifier_at(s, stream, 1, 0, figures);
+    enum command_status status = verify_at(s, stream, 1, 0, figures);
 
     if (status == STATUS_DONE)
-        status = verifier_at(s, stream, SLOW_RATE, 0, &slow);
+        status = verify_at(s, stream, SLOW_RATE, 0, &slow);
     figures->tube.deviation_mm = maths_max(figures->tube.deviation_mm, slow.tube.deviation_mm);
-    return status == STATUS_DONE ? verifier_strays(s, stream, figures) : status;
+    return status == STATUS_DONE ? verify_strays(s, stream, figures) : status;
 }
 
 static int write_shares(char *text, size_t size, const char *name, const struct compiled_figures *f)
@@ -396,8 +396,8 @@ char *compiled_shares_json(const struct session *s, FILE *stream)
     char second[SHARES_MAX];
     char *json = malloc(2 * SHARES_MAX + 8);
 
-    if (json == NULL || verifier_at(s, NULL, 1, 0, &board) != STATUS_DONE ||
-        verifier_at(s, stream, 1, 0, &ahead) != STATUS_DONE) {
+    if (json == NULL || verify_at(s, NULL, 1, 0, &board) != STATUS_DONE ||
+        verify_at(s, stream, 1, 0, &ahead) != STATUS_DONE) {
         free(json);
         return NULL;
     }

@@ -436,7 +436,7 @@ static struct stride step_to(const struct tube_verifier *t, const struct point *
     return step;
 }
 
-static void verifier_next(struct tube_verifier *t, const struct point *then)
+static void verify_next(struct tube_verifier *t, const struct point *then)
 {
     const struct stride step = step_to(t, then);
     struct nearest n = {.of_tolerance = MATHS_INFINITY};
@@ -458,7 +458,7 @@ static void verifier_next(struct tube_verifier *t, const struct point *then)
 bool tube_verifier_add(struct tube_verifier *t, const struct point *setpoint, uint32_t motion)
 {
     if (t->has_next)
-        verifier_next(t, setpoint);
+        verify_next(t, setpoint);
     t->next = *setpoint;
     t->next_motion = motion;
     t->has_next = true;
@@ -470,7 +470,7 @@ void tube_verifier_stop(struct tube_verifier *t)
     const struct point rest = t->next;
 
     if (t->has_next)
-        verifier_next(t, &rest);
+        verify_next(t, &rest);
     t->has_next = false;
 }
 

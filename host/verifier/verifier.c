@@ -158,7 +158,7 @@ static void enter_block(struct verifier *j, const struct cycle_record *record)
     j->block.landed = false;
 }
 
-static void verifier_path(struct verifier *j, const struct cycle_record *record)
+static void verify_path(struct verifier *j, const struct cycle_record *record)
 {
     double error;
 
@@ -183,7 +183,7 @@ static void verifier_path(struct verifier *j, const struct cycle_record *record)
 }
 
 /* Feed step at a junction: change of the distance between setpoints from one cycle to the next. */
-static void verifier_feed(struct verifier *j, const struct cycle_record *record)
+static void verify_feed(struct verifier *j, const struct cycle_record *record)
 {
     double feed = verifier_distance(&record->cmd, &j->cmd) * j->rate_hz;
 
@@ -194,7 +194,7 @@ static void verifier_feed(struct verifier *j, const struct cycle_record *record)
     j->feed_mm_s = feed;
 }
 
-static void verifier_axes(struct verifier *j, const struct cycle_record *record)
+static void verify_axes(struct verifier *j, const struct cycle_record *record)
 {
     const struct point *expected = &j->sent[(j->figures.cycles + 1) % VERIFIER_HISTORY];
 
@@ -217,8 +217,8 @@ static void verifier_axes(struct verifier *j, const struct cycle_record *record)
 }
 
 /* A setpoint of a path within a tolerance, which the tube verifies: only ends of programmed motions are hit exactly. */
-static void verifier_smoothed(struct verifier *j, const struct cycle_record *record,
-                              const struct block *block)
+static void verify_smoothed(struct verifier *j, const struct cycle_record *record,
+                            const struct block *block)
 {
     if (record->landed && !block->continues && point_is_same(&block->curve.end, &block->move.end))
         raise_to(&j->figures.landing_error_mm, verifier_distance(&record->cmd, &j->block.end));
@@ -227,7 +227,7 @@ static void verifier_smoothed(struct verifier *j, const struct cycle_record *rec
     j->step_inside = false;
 }
 
-static bool verifier_tube(struct verifier *j, const struct cycle_record *record)
+static bool verify_tube(struct verifier *j, const struct cycle_record *record)
 {
     struct point place = record->cmd;
 
@@ -247,15 +247,15 @@ bool verifier_add(struct verifier *j, const struct cycle_record *record, const s
         begin_ending(j, block);
     j->sent[j->figures.cycles % VERIFIER_HISTORY] = record->set;
     if (smoothed)
-        verifier_smoothed(j, record, block);
+        verify_smoothed(j, record, block);
     else
-        verifier_path(j, record);
-    verifier_feed(j, record);
-    verifier_axes(j, record);
+        verify_path(j, record);
+    verify_feed(j, record);
+    verify_axes(j, record);
     raise_to(&j->figures.correction_mm, verifier_distance(&record->cmd, &record->set));
     j->cmd = record->cmd;
     j->figures.cycles++;
-    return verifier_tube(j, record);
+    return verify_tube(j, record);
 }
 
 /* A probing move may end early: where the axes have come to rest. That this is on its way has been seen by judge_path. */

@@ -104,7 +104,7 @@ static void simulate(struct bus *bus, const struct frame_rates *rates,
 }
 
 /* How near any message came to its bound, as a part of it. */
-static double verifier_sets(uint32_t data_bitrate, unsigned lengths)
+static double verify_sets(uint32_t data_bitrate, unsigned lengths)
 {
     const struct frame_rates rates = {1000000, data_bitrate};
     static struct bus bus;
@@ -135,14 +135,14 @@ static double verifier_sets(uint32_t data_bitrate, unsigned lengths)
 /* A bound far away would prove little. */
 static void test_no_simulated_response_exceeds_its_predicted_bound(void)
 {
-    TEST_ASSERT_TRUE(verifier_sets(0, 9) > 0.9);
+    TEST_ASSERT_TRUE(verify_sets(0, 9) > 0.9);
 }
 
 static void test_nor_does_one_of_can_fd_at_any_rate(void)
 {
     static const uint32_t rates[] = {1000000, 2000000, 5000000, 8000000};
     for (unsigned i = 0; i < 4; i++)
-        TEST_ASSERT_TRUE(verifier_sets(rates[i], 65) > 0.9);
+        TEST_ASSERT_TRUE(verify_sets(rates[i], 65) > 0.9);
 }
 
 /*

@@ -334,8 +334,8 @@ static bool is_at_blunt_corner(const double q[2], double radius)
     return false;
 }
 
-static void verifier_move(const struct layout *l, const struct move *m, const struct point *start,
-                          struct verdict *v)
+static void verify_move(const struct layout *l, const struct move *m, const struct point *start,
+                        struct verdict *v)
 {
     const struct piece p = piece_of(m, start, l->plane);
     const double sign = l->mirror[0] * l->mirror[1];
@@ -361,7 +361,7 @@ static void verifier_move(const struct layout *l, const struct move *m, const st
 }
 
 /* The tool's path, from the end of the entry move on. False: the contour is refused. */
-static bool verifier_contour(const struct layout *l, struct verdict *v)
+static bool verify_contour(const struct layout *l, struct verdict *v)
 {
     struct diagnostic diagnostic;
     struct point at = {{0}};
@@ -376,7 +376,7 @@ static bool verifier_contour(const struct layout *l, struct verdict *v)
         if (move_is_motion(&m)) {
             motions++;
             if (motions > 2) {
-                verifier_move(l, &m, &at, v);
+                verify_move(l, &m, &at, v);
             }
             at = m.end;
         }
@@ -401,7 +401,7 @@ static struct layout random_layout(bool sharp)
     };
 }
 
-static void verifier_all(bool sharp)
+static void verify_all(bool sharp)
 {
     unsigned refused = 0;
     double nearest = 0.0;
@@ -416,7 +416,7 @@ static void verifier_all(bool sharp)
 
         write_contour(&l);
         read_wanted(&l);
-        if (!verifier_contour(&l, &v)) {
+        if (!verify_contour(&l, &v)) {
             refused++;
             continue;
         }
@@ -437,12 +437,12 @@ static void verifier_all(bool sharp)
 
 static void test_the_tool_keeps_exactly_its_radius(void)
 {
-    verifier_all(false);
+    verify_all(false);
 }
 
 static void test_with_sharp_corners_it_never_comes_nearer(void)
 {
-    verifier_all(true);
+    verify_all(true);
 }
 
 int main(void)

@@ -187,7 +187,7 @@ static struct {
     unsigned involutes;
 } seen;
 
-static void verifier_move(const struct move *m, const struct point *start)
+static void verify_move(const struct move *m, const struct point *start)
 {
     struct curve c;
 
@@ -222,7 +222,7 @@ static bool run_contour(void)
             continue;
         }
         if (++motions > 2) { /* the rapid, and the way from it */
-            verifier_move(&m, &at);
+            verify_move(&m, &at);
         }
         at = m.end;
     }

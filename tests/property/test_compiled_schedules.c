@@ -220,7 +220,7 @@ static struct motion_operator operator_at(struct run *r)
     return wanted;
 }
 
-static void verifier_cycle(struct run *r, const struct cycle_record *record)
+static void verify_cycle(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->moves ? record->block + AROUND : r->moves;
@@ -300,7 +300,7 @@ static enum motion_result cycle(struct run *r)
         result = MOTION_CYCLE;
     }
     if (result == MOTION_CYCLE) {
-        verifier_cycle(r, &record);
+        verify_cycle(r, &record);
         look_at_landing(r, &wanted, &record);
     }
     return result;

@@ -198,7 +198,7 @@ static void follow(struct run *r)
 }
 
 /* No chord is longer than the curve between its ends. */
-static void verifier_feed(struct run *r, const struct point *cmd)
+static void verify_feed(struct run *r, const struct point *cmd)
 {
     double square = 0.0;
 
@@ -228,7 +228,7 @@ static enum motion_result run_program(struct run *r)
         result = takt_motion_cycle(&motion, &now, &record);
         if (result == MOTION_CYCLE) {
             chain_verifier_setpoint(&r->verifier, &r->limits, &record.cmd);
-            verifier_feed(r, &record.cmd);
+            verify_feed(r, &record.cmd);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < r->cycles_max);
     return result;

@@ -405,8 +405,8 @@ static double nearest(const struct curve *c, const struct move *move, double ste
 #define SAMPLES 7
 
 /* One piece of the written program along the corrected path of a motion, from *s on. */
-static double verifier_piece(const struct curve *c, const struct move *move, unsigned piece,
-                             double *s)
+static double verify_piece(const struct curve *c, const struct move *move, unsigned piece,
+                           double *s)
 {
     struct curve w;
     double worst = 0;
@@ -442,7 +442,7 @@ static bool is_thread(const struct move *move)
 }
 
 /* A thread stays one motion, and has as many turns as programmed. */
-static unsigned verifier_thread(unsigned motion, unsigned piece, const struct curve *c)
+static unsigned verify_thread(unsigned motion, unsigned piece, const struct curve *c)
 {
     const struct move *move = &wanted.move[motion];
     const struct move *as_written = &written.move[piece];
@@ -458,7 +458,7 @@ static unsigned verifier_thread(unsigned motion, unsigned piece, const struct cu
 }
 
 /* The pieces of one motion; returns the number of the one behind them. */
-static unsigned verifier_motion(unsigned motion, unsigned piece, double *worst)
+static unsigned verify_motion(unsigned motion, unsigned piece, double *worst)
 {
     const struct move *move = &wanted.move[motion];
     struct point end;
@@ -467,7 +467,7 @@ static unsigned verifier_motion(unsigned motion, unsigned piece, double *worst)
     const bool has_curve = takt_move_curve(move, &wanted.start[motion], &c);
 
     if (has_curve && is_thread(move))
-        return verifier_thread(motion, piece, &c);
+        return verify_thread(motion, piece, &c);
     corrected(move, &move->end, &end);
     for (;; piece++) {
         TEST_ASSERT_TRUE_MESSAGE(piece < written.count, place);
@@ -476,7 +476,7 @@ static unsigned verifier_motion(unsigned motion, unsigned piece, double *worst)
                                           place);
         TEST_ASSERT_EQUAL_UINT_MESSAGE(move->overrides, written.move[piece].overrides, place);
         if (has_curve && move->kind != MOVE_RAPID)
-            *worst = maths_max(*worst, verifier_piece(&c, move, piece, &s));
+            *worst = maths_max(*worst, verify_piece(&c, move, piece, &s));
         if (ends_at(&written.move[piece], &end) &&
             (!has_curve || move->kind == MOVE_RAPID || s > c.length_mm - 0.02))
             return piece + 1;
@@ -497,7 +497,7 @@ static void correct(char **out, size_t *size, struct offline_totals *totals)
     TEST_ASSERT_EQUAL_INT(0, fclose(config.out));
 }
 
-static double verifier_program(void)
+static double verify_program(void)
 {
     struct offline_totals totals;
     double worst = 0;
@@ -514,7 +514,7 @@ static double verifier_program(void)
         TEST_FAIL();
     }
     for (unsigned i = 0; i < wanted.count; i++)
-        piece = verifier_motion(i, piece, &worst);
+        piece = verify_motion(i, piece, &worst);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(written.count, piece, place);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(wanted.spindle, written.spindle, place);
     TEST_ASSERT_TRUE_MESSAGE(worst <= TOLERANCE_MM + ROUNDING_MM, place);
@@ -536,7 +536,7 @@ static void test_what_is_written_follows_the_corrected_path(void)
         if (!is_good())
             continue;
         (void)snprintf(place, sizeof place, "seed %u", seed);
-        worst = maths_max(worst, verifier_program());
+        worst = maths_max(worst, verify_program());
         verified++;
         motions += wanted.count;
         pieces += written.count;

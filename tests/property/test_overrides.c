@@ -108,7 +108,7 @@ static double distance(const struct point *a, const struct point *b)
 }
 
 /* The axes have just come to rest where no block ends, and nothing has been held for long. */
-static void verifier_rest(struct run *r, const struct cycle_record *record)
+static void verify_rest(struct run *r, const struct cycle_record *record)
 {
     const bool rests = motion.reference.feed == 0.0 && motion.lag == 0.0;
 
@@ -123,7 +123,7 @@ static void verifier_rest(struct run *r, const struct cycle_record *record)
 static void verifier(struct run *r, const struct cycle_record *record)
 {
     chain_verifier_setpoint(&r->verifier, &r->limits, &record->cmd);
-    verifier_rest(r, record);
+    verify_rest(r, record);
     if (record->landed) {
         const double off_mm = distance(&record->cmd, &motion_block(&motion)->move.end);
 

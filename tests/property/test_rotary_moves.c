@@ -328,7 +328,7 @@ static double part_of(double difference, double rounding, double limit)
     return maths_max(0.0, maths_abs(difference) - rounding) / limit;
 }
 
-static void verifier_axis(unsigned i)
+static void verify_axis(unsigned i)
 {
     const struct plan_limits *l = &run.limits;
     const double t = l->cycle_s;
@@ -350,7 +350,7 @@ static void verifier(const struct cycle_record *record)
     seen.at[0] = record->cmd;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (has_axis(i)) {
-            verifier_axis(i);
+            verify_axis(i);
         }
     }
     seen.missed = seen.missed || (record->landed &&

@@ -214,7 +214,7 @@ static double place_on(const struct curve *c, const struct point *p, double s)
 }
 
 /* On the curve of the block that it is said to be in, and not before the last one. */
-static void verifier_exact(struct run *r, const struct cycle_record *record)
+static void verify_exact(struct run *r, const struct cycle_record *record)
 {
     const struct curve *c = &r->move[record->block - 1].curve;
     const double s_mm = place_on(c, &record->cmd, record->block == r->block ? r->s_mm : 0.0);
@@ -229,21 +229,21 @@ static void verifier_exact(struct run *r, const struct cycle_record *record)
 }
 
 /* No place on a curve is farther from its start than its length. */
-static void verifier_curve(const struct curve *c, const struct point *p, double *least)
+static void verify_curve(const struct curve *c, const struct point *p, double *least)
 {
     if (chain_distance(p, &c->start) - c->length_mm < *least) {
         *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
 
-static void verifier_corner(struct programmed *m, const struct point *from, const struct point *to)
+static void verify_corner(struct programmed *m, const struct point *from, const struct point *to)
 {
     if (chain_distance(to, &m->curve.end) - chain_distance(from, to) < m->corner_mm) {
         m->corner_mm = maths_min(m->corner_mm, chain_corner_distance(&m->curve.end, from, to));
     }
 }
 
-static void verifier_smooth(struct run *r, const struct cycle_record *record)
+static void verify_smooth(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->pushed ? record->block + AROUND : r->pushed;
@@ -251,8 +251,8 @@ static void verifier_smooth(struct run *r, const struct cycle_record *record)
 
     for (unsigned i = first; i < last; i++) {
         if (r->move[i].has_length) {
-            verifier_curve(&r->move[i].curve, &record->cmd, &least);
-            verifier_corner(&r->move[i], &r->last, &record->cmd);
+            verify_curve(&r->move[i].curve, &record->cmd, &least);
+            verify_corner(&r->move[i], &r->last, &record->cmd);
         }
     }
     r->path_mm = least < MATHS_INFINITY ? maths_max(r->path_mm, least) : r->path_mm;
@@ -260,7 +260,7 @@ static void verifier_smooth(struct run *r, const struct cycle_record *record)
     r->block = record->block;
 }
 
-static void verifier_landing(struct run *r, const struct cycle_record *record)
+static void verify_landing(struct run *r, const struct cycle_record *record)
 {
     const double off_mm = chain_distance(&record->cmd, &motion_block(&motion)->curve.end);
 
@@ -275,7 +275,7 @@ static void verifier_landing(struct run *r, const struct cycle_record *record)
 }
 
 /* The axes have just come to rest where no block ends, and nothing has been held or switched for long. */
-static void verifier_rest(struct run *r, const struct cycle_record *record)
+static void verify_rest(struct run *r, const struct cycle_record *record)
 {
     const bool rests = motion.reference.feed == 0.0 && motion.lag == 0.0;
 
@@ -289,13 +289,13 @@ static void verifier(struct run *r, const struct cycle_record *record)
     chain_verifier_setpoint(&r->verifier, &r->limits, &record->cmd);
     if (record->block > 0 && r->move[record->block - 1].has_length && !r->hands.reset) {
         if (r->tolerance_mm > 0.0) {
-            verifier_smooth(r, record);
+            verify_smooth(r, record);
         } else {
-            verifier_exact(r, record);
+            verify_exact(r, record);
         }
-        verifier_landing(r, record);
+        verify_landing(r, record);
     }
-    verifier_rest(r, record);
+    verify_rest(r, record);
     if (r->tolerance_mm > 0.0) {
         second_add_setpoint(&record->cmd);
     }

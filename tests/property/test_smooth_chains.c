@@ -175,14 +175,14 @@ static double reach_of(const struct curve *c)
 }
 
 /* Lowers *least to the distance of p from the curve. */
-static void verifier_curve(const struct curve *c, const struct point *p, double *least)
+static void verify_curve(const struct curve *c, const struct point *p, double *least)
 {
     if (chain_distance(p, &c->start) - reach_of(c) < *least) {
         *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
 
-static void verifier_corner(struct programmed *m, const struct point *from, const struct point *to)
+static void verify_corner(struct programmed *m, const struct point *from, const struct point *to)
 {
     if (chain_distance(to, &m->curve.end) - chain_distance(from, to) < m->corner_mm) {
         m->corner_mm = maths_min(m->corner_mm, chain_corner_distance(&m->curve.end, from, to));
@@ -190,7 +190,7 @@ static void verifier_corner(struct programmed *m, const struct point *from, cons
 }
 
 /* Its own motion first: what is farther away is not looked at. */
-static void verifier_place(struct run *r, const struct cycle_record *record)
+static void verify_place(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->pushed ? record->block + AROUND : r->pushed;
@@ -198,16 +198,16 @@ static void verifier_place(struct run *r, const struct cycle_record *record)
     double least = MATHS_INFINITY;
 
     if (own < last && r->move[own].has_length) {
-        verifier_curve(&r->move[own].curve, &record->cmd, &least);
+        verify_curve(&r->move[own].curve, &record->cmd, &least);
     }
     for (unsigned i = first; i < last; i++) {
         struct programmed *m = &r->move[i];
 
         if (m->has_length && i != own) {
-            verifier_curve(&m->curve, &record->cmd, &least);
+            verify_curve(&m->curve, &record->cmd, &least);
         }
         if (m->has_length) {
-            verifier_corner(m, &r->last, &record->cmd);
+            verify_corner(m, &r->last, &record->cmd);
         }
     }
     if (least < MATHS_INFINITY && least > r->path_mm) {
@@ -217,7 +217,7 @@ static void verifier_place(struct run *r, const struct cycle_record *record)
     r->last = record->cmd;
 }
 
-static void verifier_landing(struct run *r, const struct cycle_record *record)
+static void verify_landing(struct run *r, const struct cycle_record *record)
 {
     if (record->landed && record->block > 0) {
         struct programmed *m = &r->move[record->block - 1];
@@ -264,8 +264,8 @@ static enum motion_result run_program(struct run *r)
         result = takt_motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
             chain_verifier_setpoint(&r->verifier, &r->limits, &record.cmd);
-            verifier_place(r, &record);
-            verifier_landing(r, &record);
+            verify_place(r, &record);
+            verify_landing(r, &record);
             count_rests(r);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);

@@ -31,7 +31,7 @@
 #define TOLERANCE_ROOM 1e-6
 
 /* Largest of v, a, j by differences as parts of the limits, less what rounding of the trace can do. */
-static void verifier_limits(const struct verifier *j)
+static void verify_limits(const struct verifier *j)
 {
     static const char *const names[] = {"velocity", "acceleration", "jerk"};
     static const double weights[] = {2, 4, 8};
@@ -79,7 +79,7 @@ static double segment_distance(unsigned axes, const double *start, const double 
 }
 
 /* Most that a setpoint is off all of the path, whatever the order, as a part of the tolerance of the nearest piece. */
-static void verifier_tube(struct verifier *j)
+static void verify_tube(struct verifier *j)
 {
     double worst = 0;
     size_t where = 0;
@@ -104,7 +104,7 @@ static void verifier_tube(struct verifier *j)
 }
 
 /* Most that an end of a motion is off all steps, likewise. */
-static void verifier_corners(struct verifier *j)
+static void verify_corners(struct verifier *j)
 {
     double worst = 0;
     unsigned line = 0;
@@ -128,7 +128,7 @@ static void verifier_corners(struct verifier *j)
     printf("corner %.6g %u\n", worst, line);
 }
 
-static void verifier_travel(const struct verifier *j)
+static void verify_travel(const struct verifier *j)
 {
     double programmed_mm = 0, travelled_mm = 0, off[AXES_MAX];
     const double *end = j->motions > 0 ? j->motion[j->motions - 1].end : j->start;
@@ -148,7 +148,7 @@ static void verifier_travel(const struct verifier *j)
 }
 
 /* How far from one is it, and where? Each of these may be so much work. */
-static double verifier_disorder(struct verifier *j, const struct walk *w)
+static double verify_disorder(struct verifier *j, const struct walk *w)
 {
     double factor;
 
@@ -156,13 +156,13 @@ static double verifier_disorder(struct verifier *j, const struct walk *w)
     factor = least_factor(j);
     printf("order %.6g %zu\n", factor, w->lost_row > 0 ? w->lost_row - 1 : j->rows - 1);
     j->work = 0;
-    verifier_tube(j);
-    verifier_corners(j);
+    verify_tube(j);
+    verify_corners(j);
     j->work = 0;
     return factor;
 }
 
-static void verifier_path(struct verifier *j)
+static void verify_path(struct verifier *j)
 {
     double *before = make(j->motions + 1, sizeof *before);
     const double factor = 1 + TOLERANCE_ROOM;
@@ -177,7 +177,7 @@ static void verifier_path(struct verifier *j)
     } else if (w.arrived) {
         printf("order 1\n");
     } else {
-        w = walk_along(j, verifier_disorder(j, &w), true, before);
+        w = walk_along(j, verify_disorder(j, &w), true, before);
     }
     printf("back %.6g %u\n", w.back_part, w.back_line);
     printf("exact %.6g %u\n", w.off_mm, w.off_line);
@@ -213,10 +213,10 @@ int main(int count, char **word)
     (void)fclose(file);
     cut(&j);
     measure_bends(&j);
-    verifier_limits(&j);
-    verifier_travel(&j);
+    verify_limits(&j);
+    verify_travel(&j);
     if (j.pieces > 0)
-        verifier_path(&j);
+        verify_path(&j);
     free_case(&j);
     return 0;
 }

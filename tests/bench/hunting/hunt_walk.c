@@ -175,7 +175,7 @@ static double time_at(const struct verifier *j, size_t piece, double part, const
 }
 
 /* Faster than programmed? In exact path by the time that the way would have taken: what a tolerance cuts off is no haste. */
-static void verifier_exact_feed(const struct verifier *j, struct walk *w, size_t k, unsigned line)
+static void verify_exact_feed(const struct verifier *j, struct walk *w, size_t k, unsigned line)
 {
     for (size_t i = 0; i < WINDOWS; i++) {
         const size_t n = windows[i];
@@ -192,7 +192,7 @@ static void verifier_exact_feed(const struct verifier *j, struct walk *w, size_t
  * kind counts, X Y Z, or A B C of motions of those alone, as time_s does. What rounding moves the others by, on the way to a
  * motion of theirs, is bounded by the tolerance, and is no part of F.
  */
-static void verifier_feed(const struct verifier *j, struct walk *w, size_t k)
+static void verify_feed(const struct verifier *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX], most = 0;
     bool linear = true, turning = true;
@@ -251,7 +251,7 @@ static double turn_between(const struct verifier *j, size_t from, size_t to)
  *
  * So what a curve may go back by is what the path turns by meanwhile, and 2.
  */
-static void verifier_back(const struct verifier *j, struct walk *w, size_t k)
+static void verify_back(const struct verifier *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX];
 
@@ -309,7 +309,7 @@ static bool is_smooth(const struct verifier *j, const struct walk *w)
     return true;
 }
 
-static void verifier_standing(const struct verifier *j, struct walk *w, size_t k)
+static void verify_standing(const struct verifier *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX];
 
@@ -322,8 +322,8 @@ static void verifier_standing(const struct verifier *j, struct walk *w, size_t k
         w->stop_line = j->motion[j->piece[w->first].motion].line;
 }
 
-static void verifier_exact(const struct verifier *j, struct walk *w, size_t k, size_t low,
-                           size_t high, const double *before)
+static void verify_exact(const struct verifier *j, struct walk *w, size_t k, size_t low,
+                         size_t high, const double *before)
 {
     double least = (double)INFINITY;
     const unsigned line = j->motion[j->piece[low].motion].line;
@@ -336,7 +336,7 @@ static void verifier_exact(const struct verifier *j, struct walk *w, size_t k, s
     w->exact_rows++;
     w->time_s[0][k] = time_at(j, low, j->reach[low].first, before);
     w->time_s[1][k] = time_at(j, high, j->reach[high].last, before);
-    verifier_exact_feed(j, w, k, line);
+    verify_exact_feed(j, w, k, line);
 }
 
 /* Does the last row lead on to where the path must end? */
@@ -366,14 +366,14 @@ struct walk walk_along(struct verifier *j, double factor, bool closely, const do
         if (!closely)
             continue;
         if (!has_rounded(j, &w))
-            verifier_exact(j, &w, k, low, high, before);
+            verify_exact(j, &w, k, low, high, before);
         else
             w.exact_rows = 0;
         if (w.exact_rows == 0 && k > 0)
-            verifier_feed(j, &w, k);
+            verify_feed(j, &w, k);
         if (k > 0) {
-            verifier_back(j, &w, k);
-            verifier_standing(j, &w, k);
+            verify_back(j, &w, k);
+            verify_standing(j, &w, k);
         }
         w.arrived = k + 1 == j->rows && is_done(j, high);
     }
