@@ -424,14 +424,27 @@ static bool stop_reading(struct program *p)
     return true;
 }
 
+/*
+ * Behind a jump forward lines are new, too, though not all before them has been read. A line that goes on (lexer.c) begins
+ * one byte behind the last; passing over an empty line, which is no more, leaves nothing out.
+ */
+static bool is_new(struct program_flow *f, uint64_t offset, const struct program_place *behind)
+{
+    const bool is_ahead = offset >= f->read_to;
+
+    if (offset == f->furthest.offset || offset == f->furthest.offset + 1) {
+        f->furthest = *behind;
+    }
+    f->read_to = is_ahead ? behind->offset : f->read_to;
+    return is_ahead;
+}
+
 bool takt_flow_count_line(struct program *p)
 {
     struct program_flow *f = &p->flow;
+    const struct program_place behind = takt_lexer_place(&p->lexer);
 
-    const uint64_t offset = takt_lexer_this_line(&p->lexer).offset;
-
-    if (offset >= f->furthest.offset) {
-        f->furthest = offset == f->furthest.offset ? takt_lexer_place(&p->lexer) : f->furthest;
+    if (is_new(f, takt_lexer_this_line(&p->lexer).offset, &behind)) {
         return true;
     }
     f->lines_repeated++;

@@ -221,6 +221,7 @@ struct program_flow {
     bool restarted; /* M99 of the main program has gone back to the beginning */
     double value;
     struct program_place furthest; /* everything before it has been read */
+    uint64_t read_to;              /* and something up to here: further on behind a jump forward */
     uint32_t lines_again;          /* lines read again since the last move that takes time */
     uint32_t lines_repeated;       /* lines read again in all */
     double kept[PROGRAM_KEPT_MAX]; /* what calls keep: a stack */

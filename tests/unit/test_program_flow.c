@@ -345,6 +345,14 @@ static void test_a_text_has_a_stated_number_of_subroutines(void)
     expect_refused(text, TAKT_ERROR_SUBS_TOO_MANY, 2 * PROGRAM_SUBS_MAX + 1);
 }
 
+/* A jump of a translator (O<place> GOTO line blocks), and a line that goes on: what lies behind is as new, and read again, as elsewhere. */
+static void test_a_circle_behind_a_jump_forward_is_stopped(void)
+{
+    expect_refused("o23 goto [3] [0]\nG0 X1\no1 while [1]\n#1=2\no1 endwhile\n", TAKT_ERROR_CIRCLE,
+                   4);
+    expect_refused("F100\n\x1fG1 X1\no1 while [1]\n#1=2\no1 endwhile\n", TAKT_ERROR_CIRCLE, 3);
+}
+
 static void test_a_program_that_runs_in_a_circle_without_a_move_is_stopped(void)
 {
     expect_refused("o1 while [1]\n#1=[#1+1]\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
@@ -488,6 +496,7 @@ int main(void)
     RUN_TEST(test_a_call_takes_thirty_arguments);
     RUN_TEST(test_blocks_and_calls_have_a_stated_depth);
     RUN_TEST(test_a_text_has_a_stated_number_of_subroutines);
+    RUN_TEST(test_a_circle_behind_a_jump_forward_is_stopped);
     RUN_TEST(test_a_program_that_runs_in_a_circle_without_a_move_is_stopped);
     RUN_TEST(test_a_stream_passes_over_text_but_never_goes_back);
     RUN_TEST(test_after_an_error_each_line_is_read_once_more_at_most);
