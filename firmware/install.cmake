@@ -21,8 +21,10 @@ if(NOT TAKT_INSTALL)
   return()
 endif()
 
-set(installed takt_flags)
-set(archives "")
+# What stops at a broken invariant where the image does not define that itself.
+set(installed takt_flags takt_stop)
+set_target_properties(takt_stop PROPERTIES EXPORT_NAME stop)
+set(archives " -ltakt_stop")
 get_property(rooms GLOBAL PROPERTY TAKT_ROOMS)
 foreach(room IN LISTS rooms)
   get_target_property(folder takt_${room} SOURCE_DIR)

@@ -6,7 +6,6 @@
 
 #include "hal/can.h"
 
-#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -18,7 +17,7 @@ struct classical_frame {
     uint8_t unused;
 };
 
-static_assert(sizeof(struct classical_frame) == 12, "as on every side");
+_Static_assert(sizeof(struct classical_frame) == 12, "as on every side");
 
 static inline void classical_frame_set(struct classical_frame *to, const struct can_frame *from)
 {

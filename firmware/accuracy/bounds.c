@@ -1,5 +1,6 @@
 #include "accuracy/bounds.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 double takt_bounds_line_off_mm(unsigned axes, double step_mm)

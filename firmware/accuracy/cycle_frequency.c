@@ -1,5 +1,6 @@
 #include "accuracy/cycle_frequency.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <stddef.h>

@@ -1,8 +1,8 @@
 #include "decimal.h"
 
+#include "base/assert.h"
 #include "bits.h"
 
-#include <assert.h>
 #include <stdbool.h>
 
 /* 10^0 to 10^22: every power of ten that is a double without rounding. */
@@ -77,6 +77,7 @@ static void wide_set(struct wide *w, uint64_t mantissa, int zero_limbs)
 static void wide_multiply(struct wide *w, uint32_t factor)
 {
     uint64_t carry = 0;
+    TAKT_ASSERT(w->count <= WIDE_LIMBS);
     for (int i = 0; i < w->count; i++) {
         carry += (uint64_t)w->limb[i] * factor;
         w->limb[i] = (uint32_t)carry;
@@ -89,6 +90,7 @@ static void wide_multiply(struct wide *w, uint32_t factor)
 static void wide_divide(struct wide *w, uint32_t divisor)
 {
     uint64_t rest = 0;
+    TAKT_ASSERT(divisor != 0);
     for (int i = w->count - 1; i >= 0; i--) {
         rest = rest << 32 | w->limb[i];
         w->limb[i] = (uint32_t)(rest / divisor);
@@ -123,6 +125,7 @@ static uint64_t wide_leading_bits(const struct wide *w, int *top_bit, bool *rest
     uint64_t lead = (uint64_t)wide_limb_from_top(w, 0) << 32 | wide_limb_from_top(w, 1);
     uint64_t next = (uint64_t)wide_limb_from_top(w, 2) << 32;
     int zeros = __builtin_clzll(lead);
+    TAKT_ASSERT(w->count > 0);
     *top_bit = 32 * w->count - 1 - zeros;
     *rest = w->inexact || (next << zeros) != 0;
     for (int place = 3; place < w->count; place++)
@@ -311,7 +314,7 @@ static size_t write_with_exponent(char *text, double value, unsigned places)
 
 size_t takt_decimal_write(char *text, double value, unsigned places)
 {
-    assert(places <= SMALL_POWER_MAX);
+    TAKT_ASSERT(places <= SMALL_POWER_MAX);
     if (value < FIXED_LIMIT && value > -FIXED_LIMIT)
         return write_fixed(text, value, places);
     if (value != value)

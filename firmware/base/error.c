@@ -1,5 +1,6 @@
 #include "error.h"
 
+#include "base/assert.h"
 #include "decimal.h"
 #include "error_text.h"
 
@@ -14,6 +15,7 @@ struct text {
 /* Cuts at the end of the room, and keeps one place for the terminating zero. */
 static void text_add(struct text *t, const char *s, size_t length)
 {
+    TAKT_ASSERT(t->length < DIAGNOSTIC_TEXT_MAX);
     for (size_t i = 0; i < length && t->length < DIAGNOSTIC_TEXT_MAX - 1; i++)
         t->start[t->length++] = s[i];
 }

@@ -290,7 +290,8 @@
     X(CRYSTAL_ABSENT, "the crystal does not oscillate, and without it the CAN bus has no rate")    \
     X(STEP_CYCLE, "step drives need a cycle of at most %v us, in steps of 5 us")                   \
     X(WATCHDOG_RESET, "the watchdog had to restart the controller")                                \
-    X(CRASHED, "the controller had to stop and restart: %m at %x")
+    X(CRASHED, "the controller had to stop and restart: %m at %x")                                 \
+    X(INVARIANT_BROKEN, "the controller had to stop and restart: invariant broken in %w, line %v")
 
 #define TAKT_ERROR_INDEX(name, text) TAKT_ERROR_INDEX_##name,
 enum takt_error_index { TAKT_ERRORS(TAKT_ERROR_INDEX) TAKT_ERROR_TOTAL };

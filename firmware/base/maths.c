@@ -1,6 +1,7 @@
 /* The functions that run in the control cycle: few operations, at most one division. */
 #include "maths.h"
 
+#include "base/assert.h"
 #include "bits.h"
 #include "pair.h"
 
@@ -97,6 +98,7 @@ static double drop_whole_turns(double x)
 {
     double rest = maths_abs(x);
     double turns = MATHS_TWO_PI;
+    TAKT_ASSERT(maths_is_finite(x));
     while (turns * 2.0 <= rest)
         turns *= 2.0;
     while (turns >= MATHS_TWO_PI) {

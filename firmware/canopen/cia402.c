@@ -1,5 +1,7 @@
 #include "canopen/cia402.h"
 
+#include "base/assert.h"
+
 /*
  * CiA 402-2, table "State coding": the statusword under the mask has the value. In the order of
  * takt_cia402_state.
@@ -34,11 +36,13 @@ const char *takt_cia402_state_text(enum cia402_state state)
         [CIA402_FAULT_REACTION] = "fault reaction active",
         [CIA402_FAULT] = "fault",
     };
+    TAKT_ASSERT(state <= CIA402_FAULT);
     return names[state];
 }
 
 uint16_t takt_cia402_statusword(enum cia402_state state)
 {
+    TAKT_ASSERT(state <= CIA402_FAULT);
     return state_coding[state].value;
 }
 

@@ -1,5 +1,6 @@
 #include "canopen/concise_dcf.h"
 
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/sdo_client.h"
 

@@ -1,4 +1,5 @@
 #include "canopen/emcy.h"
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/node.h"
 
@@ -8,6 +9,7 @@
 
 void takt_emcy_write(struct can_frame *frame, const struct emcy *emcy)
 {
+    TAKT_ASSERT(emcy->node >= NODE_MIN && emcy->node <= NODE_MAX);
     frame->id = (uint16_t)(EMCY_FUNCTION + emcy->node);
     frame->length = EMCY_LENGTH;
     little_endian_write16(frame->data, emcy->code);

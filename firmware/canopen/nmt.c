@@ -1,8 +1,10 @@
 #include "canopen/nmt.h"
+#include "base/assert.h"
 #include "canopen/node.h"
 
 void takt_nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_t node)
 {
+    TAKT_ASSERT(node <= NODE_MAX);
     frame->id = NMT_COMMAND_COB_ID;
     frame->length = 2;
     frame->data[0] = (uint8_t)command;
@@ -42,6 +44,7 @@ bool takt_nmt_read_command(const struct can_frame *frame, enum nmt_command *comm
 
 void takt_nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state)
 {
+    TAKT_ASSERT(node <= NODE_MAX);
     frame->id = (uint16_t)(NMT_HEARTBEAT_FUNCTION + node);
     frame->length = 1;
     frame->data[0] = (uint8_t)state;
@@ -56,6 +59,7 @@ bool takt_nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum 
 
 void takt_nmt_write_guard(struct can_frame *frame, uint8_t node)
 {
+    TAKT_ASSERT(node >= NODE_MIN && node <= NODE_MAX);
     *frame = (struct can_frame){.id = (uint16_t)((CAN_REMOTE | NMT_HEARTBEAT_FUNCTION) + node),
                                 .length = 1};
 }

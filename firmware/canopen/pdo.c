@@ -1,4 +1,5 @@
 #include "canopen/pdo.h"
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 
 static unsigned object_bytes(uint32_t object)
@@ -32,6 +33,7 @@ bool takt_pdo_map(struct pdo_mapping *mapping, const uint32_t *objects, unsigned
 
 static void write_value(uint8_t *bytes, unsigned count, uint32_t value)
 {
+    TAKT_ASSERT(count == 1 || count == 2 || count == 4);
     switch (count) {
     case 1:
         bytes[0] = (uint8_t)value;
@@ -47,6 +49,7 @@ static void write_value(uint8_t *bytes, unsigned count, uint32_t value)
 
 static uint32_t read_value(const uint8_t *bytes, unsigned count)
 {
+    TAKT_ASSERT(count == 1 || count == 2 || count == 4);
     switch (count) {
     case 1:
         return bytes[0];
@@ -61,6 +64,7 @@ void takt_pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_fra
 {
     const struct pdo_mapping *mapping = &pdo->mapping;
     uint8_t *bytes = frame->data;
+    TAKT_ASSERT(mapping->count <= PDO_MAPPED_MAX && mapping->length <= CAN_DATA_MAX);
     frame->id = pdo->cob_id;
     frame->length = mapping->length;
     for (unsigned i = 0; i < mapping->count; i++) {
@@ -72,6 +76,7 @@ void takt_pdo_pack(const struct pdo *pdo, const uint32_t value[], struct can_fra
 
 void takt_pdo_unpack(const struct pdo_mapping *mapping, const uint8_t *data, uint32_t value[])
 {
+    TAKT_ASSERT(mapping->count <= PDO_MAPPED_MAX);
     for (unsigned i = 0; i < mapping->count; i++) {
         unsigned count = object_bytes(mapping->object[i]);
         value[i] = read_value(data, count);

@@ -1,5 +1,7 @@
 #include "canopen/sdo.h"
+#include "base/assert.h"
 #include "canopen/little_endian.h"
+#include "canopen/node.h"
 
 uint32_t takt_sdo_read_object(const struct can_frame *frame)
 {
@@ -20,6 +22,7 @@ void takt_sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t c
 void takt_sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,
                           uint32_t code)
 {
+    TAKT_ASSERT(node >= NODE_MIN && node <= NODE_MAX);
     takt_sdo_write_initiate(frame, (uint16_t)(function + node), SDO_ABORT, object, code);
 }
 
@@ -27,5 +30,6 @@ void takt_sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object,
 {
     const uint8_t command =
         SDO_REQUEST_DOWNLOAD | (SDO_EXPEDITED_MAX - 2) << 2 | SDO_EXPEDITED | SDO_SIZE_GIVEN;
+    TAKT_ASSERT(node >= NODE_MIN && node <= NODE_MAX);
     takt_sdo_write_initiate(frame, (uint16_t)(SDO_REQUEST_FUNCTION + node), command, object, value);
 }

@@ -2,6 +2,7 @@
  * Block transfers of the SDO server (CiA 301, 7.2.4.3.8 and following): many segments to one
  * acknowledgement, the whole value guarded by a checksum.
  */
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/sdo_server_private.h"
 
@@ -81,6 +82,7 @@ static bool send_segment(struct sdo_server *server, uint8_t sequence)
     size_t from = server->moved + (size_t)(sequence - 1) * SDO_SEGMENT_MAX;
     size_t left = server->length - from;
     size_t length = left < SDO_SEGMENT_MAX ? left : SDO_SEGMENT_MAX;
+    TAKT_ASSERT(server->moved <= server->length);
     frame.data[0] = (uint8_t)(sequence | (length == left ? BLOCK_LAST_SEGMENT : 0));
     memcpy(frame.data + 1, server->source + from, length);
     return takt_sdo_server_send(server, &frame);
@@ -91,12 +93,14 @@ static unsigned segments_of_block(const struct sdo_server *server)
 {
     size_t left = server->length - server->moved;
     size_t segments = left == 0 ? 1 : (left + SDO_SEGMENT_MAX - 1) / SDO_SEGMENT_MAX;
+    TAKT_ASSERT(server->moved <= server->length);
     return segments < server->block_size ? (unsigned)segments : server->block_size;
 }
 
 void takt_sdo_server_send_segments(struct sdo_server *server)
 {
     unsigned segments = segments_of_block(server);
+    TAKT_ASSERT(server->state == SDO_SERVER_SENDING);
     while (server->sequence < segments) {
         if (!send_segment(server, (uint8_t)(server->sequence + 1)))
             return;

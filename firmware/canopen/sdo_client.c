@@ -1,11 +1,13 @@
 #include "canopen/sdo_client.h"
+#include "base/assert.h"
 #include "canopen/little_endian.h"
+#include "canopen/node.h"
 
-#include <assert.h>
 #include <string.h>
 
 static void begin(struct sdo_client *client, uint8_t node, uint32_t object, uint32_t timeout_cycles)
 {
+    TAKT_ASSERT(node >= NODE_MIN && node <= NODE_MAX);
     memset(client, 0, sizeof *client);
     client->result = SDO_BUSY;
     client->node = node;
@@ -17,7 +19,7 @@ static void begin(struct sdo_client *client, uint8_t node, uint32_t object, uint
 void takt_sdo_client_download(struct sdo_client *client, uint8_t node, uint32_t object,
                               const uint8_t *value, unsigned length, uint32_t timeout_cycles)
 {
-    assert(length >= 1 && length <= SDO_CLIENT_VALUE_MAX);
+    TAKT_ASSERT(length >= 1 && length <= SDO_CLIENT_VALUE_MAX);
     begin(client, node, object, timeout_cycles);
     client->length = (uint8_t)length;
     client->is_segmented = length > SDO_EXPEDITED_MAX;
@@ -35,7 +37,7 @@ void takt_sdo_client_download_number(struct sdo_client *client, uint8_t node, ui
                                      uint32_t value, unsigned length, uint32_t timeout_cycles)
 {
     uint8_t bytes[SDO_EXPEDITED_MAX];
-    assert(length <= sizeof bytes);
+    TAKT_ASSERT(length <= sizeof bytes);
     little_endian_write32(bytes, value);
     takt_sdo_client_download(client, node, object, bytes, length, timeout_cycles);
 }
@@ -56,6 +58,7 @@ static unsigned segment_length(const struct sdo_client *client)
 static uint8_t download_command(const struct sdo_client *client)
 {
     unsigned unused = SDO_EXPEDITED_MAX - (unsigned)client->length;
+    TAKT_ASSERT(client->is_segmented || client->length <= SDO_EXPEDITED_MAX);
     if (client->is_segmented)
         return SDO_REQUEST_DOWNLOAD | SDO_SIZE_GIVEN;
     return (uint8_t)(SDO_REQUEST_DOWNLOAD | unused << 2 | SDO_EXPEDITED | SDO_SIZE_GIVEN);
@@ -105,6 +108,7 @@ bool takt_sdo_client_next(const struct sdo_client *client, struct can_frame *fra
 
 void takt_sdo_client_sent(struct sdo_client *client)
 {
+    TAKT_ASSERT(client->send_pending || client->abort_pending);
     client->send_pending = false;
     client->abort_pending = false;
 }
@@ -112,6 +116,7 @@ void takt_sdo_client_sent(struct sdo_client *client)
 /* The node has broken the protocol, or let us wait: it is told, so that it forgets the transfer. */
 static void give_up(struct sdo_client *client, enum sdo_result result, uint32_t code)
 {
+    TAKT_ASSERT(result != SDO_BUSY && result != SDO_DONE);
     client->result = result;
     client->abort_code = code;
     client->send_pending = false;
@@ -126,6 +131,7 @@ static void progress(struct sdo_client *client)
 
 static void take_value(struct sdo_client *client, const uint8_t *bytes, unsigned length)
 {
+    TAKT_ASSERT(client->moved <= SDO_CLIENT_VALUE_MAX);
     if (client->moved + length > SDO_CLIENT_VALUE_MAX) {
         give_up(client, SDO_ABORTED, SDO_ABORT_MEMORY);
         return;

@@ -1,3 +1,4 @@
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/sdo_server_private.h"
 
@@ -48,6 +49,7 @@ bool takt_sdo_server_open(struct sdo_server *server)
 static uint32_t expedited_value(const struct sdo_server *server)
 {
     uint8_t bytes[SDO_EXPEDITED_MAX] = {0};
+    TAKT_ASSERT(server->length <= SDO_EXPEDITED_MAX);
     memcpy(bytes, server->source, server->length);
     return little_endian_read32(bytes);
 }
@@ -105,6 +107,7 @@ static void answer_segment(struct sdo_server *server, unsigned command, const ui
 {
     struct can_frame frame = {.id = (uint16_t)(SDO_RESPONSE_FUNCTION + server->node),
                               .length = SDO_LENGTH};
+    TAKT_ASSERT(length <= SDO_SEGMENT_MAX);
     frame.data[0] = (uint8_t)command;
     if (length > 0)
         memcpy(frame.data + 1, bytes, length);

@@ -1,9 +1,11 @@
 #include "canopen/target_pdo.h"
+#include "base/assert.h"
 #include "canopen/cia402.h"
 
 unsigned takt_target_pdo_members(unsigned count, unsigned index, unsigned group)
 {
     const unsigned left = count - (index - index % group);
+    TAKT_ASSERT(index < count && group > 0);
     return left < group ? left : group;
 }
 
@@ -11,6 +13,7 @@ void takt_target_pdo_set(struct pdo *pdo, const uint8_t node[], unsigned count, 
                          unsigned group)
 {
     uint32_t objects[TARGET_PDO_FD];
+    TAKT_ASSERT(index < count && group > 0 && group <= TARGET_PDO_FD);
     for (unsigned i = 0; i < TARGET_PDO_FD; i++)
         objects[i] = i == index % group ? CIA402_TARGET_POSITION : PDO_DUMMY_32;
     pdo->cob_id = (uint16_t)(PDO_RPDO2_FUNCTION + node[index - index % group]);

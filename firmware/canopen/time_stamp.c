@@ -1,5 +1,6 @@
 #include "canopen/time_stamp.h"
 
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 
 /* The upper four bits of the milliseconds are reserved. */
@@ -24,6 +25,7 @@ bool takt_time_stamp_read(const struct can_frame *frame, struct time_stamp *time
 struct time_stamp takt_time_stamp_add(struct time_stamp time, uint64_t by_ms)
 {
     uint64_t ms = time.ms + by_ms;
+    TAKT_ASSERT(time.ms < TIME_MS_PER_DAY);
     return (struct time_stamp){.ms = (uint32_t)(ms % TIME_MS_PER_DAY),
                                .days = (uint16_t)(time.days + ms / TIME_MS_PER_DAY)};
 }

@@ -1,5 +1,6 @@
 #include "classic/diagram.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "classic/s_curve.h"
 
@@ -13,12 +14,14 @@ double takt_diagram_ramp_s(const struct diagram_limits *limits, double change_mm
 {
     double round;
 
+    TAKT_ASSERT(limits->a_mm_s2 > 0.0 && limits->j_mm_s3 > 0.0);
     return takt_s_curve_time(change_mm_s, limits->a_mm_s2, limits->j_mm_s3, &round);
 }
 
 /* A symmetric ramp covers its mean feed times its time. */
 static double ramp_way(const struct diagram_limits *limits, double from_mm_s, double to_mm_s)
 {
+    TAKT_ASSERT(from_mm_s >= 0.0 && to_mm_s >= 0.0);
     return 0.5 * (from_mm_s + to_mm_s) *
            takt_diagram_ramp_s(limits, maths_abs(to_mm_s - from_mm_s));
 }
@@ -63,6 +66,7 @@ static double find_cruise(const struct diagram_limits *limits, double start, dou
 
 static double whole_cycles(double time_s, double cycle_s)
 {
+    TAKT_ASSERT(cycle_s > 0.0);
     return cycle_s * takt_maths_ceil(time_s / cycle_s - CYCLE_SLACK);
 }
 
@@ -76,6 +80,7 @@ static double set_ramp(const struct diagram_limits *limits, double change, doubl
 void takt_diagram_set(struct diagram *d, const struct diagram_limits *limits, double start_mm_s,
                       double end_mm_s, double cycle_s)
 {
+    TAKT_ASSERT(cycle_s > 0.0 && start_mm_s >= 0.0 && end_mm_s >= 0.0);
     d->start_mm_s = start_mm_s;
     d->end_mm_s = end_mm_s;
     d->cruise_mm_s = find_cruise(limits, start_mm_s, end_mm_s);

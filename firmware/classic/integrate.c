@@ -1,5 +1,6 @@
 #include "classic/integrate.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -13,6 +14,7 @@ static int64_t truncated(double units)
 void takt_integrate_begin(struct integrate *i, double unit_mm, const struct point *start,
                           const struct point *end, double length_mm)
 {
+    TAKT_ASSERT(unit_mm > 0.0 && length_mm > 0.0);
     memset(i, 0, sizeof(*i));
     i->unit_mm = unit_mm;
     for (int n = 0; n < AXIS_COUNT; n++) {

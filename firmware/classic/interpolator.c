@@ -1,5 +1,6 @@
 #include "classic/interpolator.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "geometry/place.h"
 
@@ -20,6 +21,7 @@ double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned 
     const double most = (double)(INT64_C(1) << (word_bits - 1U));
     double unit_mm = increment_mm;
 
+    TAKT_ASSERT(word_bits >= 2 && word_bits <= 64);
     while (range_mm >= unit_mm * most) {
         unit_mm *= 2.0;
     }

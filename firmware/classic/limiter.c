@@ -1,5 +1,6 @@
 #include "classic/limiter.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 static double threshold(double velocity, double most)

@@ -1,5 +1,6 @@
 #include "classic/s_curve.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* The first half: with height h = 1/(1 - r) of the slope, h u^2/(2r), then h (u - r/2). */
@@ -7,6 +8,7 @@ static double first_half(double u, double round)
 {
     const double height = 1.0 / (1.0 - round);
 
+    TAKT_ASSERT(round > 0.0 && round <= 0.5 && u >= 0.0);
     return u < round ? height * u * u / (2.0 * round) : height * (u - 0.5 * round);
 }
 
@@ -20,6 +22,7 @@ static double first_half_integral(double u, double round)
 {
     const double height = 1.0 / (1.0 - round);
 
+    TAKT_ASSERT(round > 0.0 && round <= 0.5 && u >= 0.0);
     if (u < round) {
         return height * u * u * u / (6.0 * round);
     }
@@ -34,6 +37,7 @@ double takt_s_curve_integral(double u, double round)
 /* T = D/a + a/j where the slope a is reached, D >= a^2/j; else 2 sqrt(D/j). */
 double takt_s_curve_time(double change, double slope, double bend, double *round)
 {
+    TAKT_ASSERT(slope > 0.0 && bend > 0.0);
     *round = 0.5;
     if (change * bend < slope * slope) {
         return 2.0 * maths_sqrt(change / bend);

@@ -1,5 +1,6 @@
 #include "classic/shapers.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* What EI leaves of a swing at the mode's own frequency. */
@@ -8,6 +9,7 @@
 /* What is left of a swing after n periods: exp(-2 pi damping n / sqrt(1 - damping^2)). */
 static double left_after(const struct shape_mode *mode, double periods)
 {
+    TAKT_ASSERT(mode->damping >= 0.0 && mode->damping < 1.0);
     return takt_maths_exp(-2.0 * MATHS_PI * periods * mode->damping /
                           maths_sqrt(1.0 - mode->damping * mode->damping));
 }
@@ -19,6 +21,7 @@ static void set_three(struct train *t, const struct shape_mode *mode, double cyc
     const double cycles = n * takt_zv_period(mode, cycle_s);
     const double k = left_after(mode, n);
 
+    TAKT_ASSERT(cycle_s > 0.0 && n > 0.0);
     takt_train_set_none(t);
     takt_train_add(t, 0.0, first);
     takt_train_add(t, cycles, second * k);

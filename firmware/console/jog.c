@@ -2,6 +2,7 @@
  * $J=: a straight line to a place, by words of its own. The modes of the text around it count only where Grbl says so: units
  * (G20, G21) and distances (G90, G91).
  */
+#include "base/assert.h"
 #include "base/decimal.h"
 #include "base/maths.h"
 #include "console/characters.h"
@@ -56,6 +57,7 @@ static bool take_g(struct jog *j, double number)
 static enum console_error take_axis(struct jog *j, const struct machine *machine, unsigned axis,
                                     double value)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     if (!machine->axis[axis].present)
         return CONSOLE_UNSUPPORTED;
     if ((j->axes & 1U << axis) != 0)
@@ -121,6 +123,7 @@ static enum console_error read_words(struct jog *j, const struct machine *machin
 
 static double shown(const struct panel_snapshot *now, enum panel_id first, unsigned axis)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return MM_PER_COUNT * (double)panel_value(now, (enum panel_id)(first + axis));
 }
 
@@ -130,6 +133,7 @@ static double target(const struct jog *j, const struct panel_snapshot *now, unsi
     const double at = shown(now, REGISTER_POSITION_X, axis);
     const double word = j->word[axis] * (j->inches && axis < AXIS_LINEAR_COUNT ? MM_PER_INCH : 1.0);
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     if (j->incremental)
         return at + word;
     return j->machine ? word : word + at - shown(now, REGISTER_WORK_POSITION_X, axis);

@@ -1,6 +1,7 @@
 #include "console/lines.h"
 
-#include <assert.h>
+#include "base/assert.h"
+
 #include <string.h>
 
 /* A line takes its mark and its end besides its characters. */
@@ -30,7 +31,7 @@ static void set_flag(struct lines_flag *flag, bool value)
 
 void takt_lines_init(struct lines *l, uint8_t *byte, uint32_t size)
 {
-    assert((size & (size - 1)) == 0);
+    TAKT_ASSERT((size & (size - 1)) == 0);
     memset(l, 0, sizeof *l);
     l->byte = byte;
     l->size = size;
@@ -38,6 +39,7 @@ void takt_lines_init(struct lines *l, uint8_t *byte, uint32_t size)
 
 static uint8_t *place(const struct lines *l, uint32_t at)
 {
+    TAKT_ASSERT(l->size > 0);
     return &l->byte[at & (l->size - 1)];
 }
 
@@ -56,8 +58,10 @@ static void copy_line(const struct lines *l, uint32_t mark, char *text)
     const uint32_t end = end_of(l, mark) - 1;
     uint32_t length = 0;
 
-    for (uint32_t at = mark + 1; at != end; at++)
+    for (uint32_t at = mark + 1; at != end; at++) {
+        TAKT_ASSERT(length < LINES_LENGTH_MAX);
         text[length++] = (char)*place(l, at);
+    }
     text[length] = '\0';
 }
 
@@ -65,6 +69,7 @@ static void copy_line(const struct lines *l, uint32_t mark, char *text)
 
 static uint32_t free_bytes(const struct lines *l)
 {
+    TAKT_ASSERT(l->at - l->collected <= l->size);
     return l->size - (l->at - l->collected);
 }
 
@@ -87,6 +92,7 @@ uint32_t takt_lines_capacity(const struct lines *l)
 /* A line that is too long leaves its mark alone. */
 static void finish_line(struct lines *l)
 {
+    TAKT_ASSERT(free_bytes(l) > 0);
     if (l->is_long) {
         l->at = l->written + 1;
         *place(l, l->written) = LINES_LONG;
@@ -148,12 +154,14 @@ uint8_t takt_lines_look(const struct lines *l, char *text)
 
 void takt_lines_release(struct lines *l)
 {
+    TAKT_ASSERT(get_place(&l->released) != l->written);
     set_place(&l->released, end_of(l, get_place(&l->released)));
 }
 
 /* A program passes over it; without one there is nobody else who would. */
 void takt_lines_skip(struct lines *l)
 {
+    TAKT_ASSERT(get_place(&l->released) != l->written);
     *place(l, get_place(&l->released)) = LINES_OWN;
     takt_lines_release(l);
     if (!get_flag(&l->active))
@@ -212,6 +220,7 @@ enum takt_error takt_lines_get_cause(const struct lines *l)
 /* The line handed out is done: its answer, then the place, so that the console finds the one when it sees the other. */
 static void finish_handed(struct lines *l)
 {
+    TAKT_ASSERT(l->is_handed);
     *place(l, get_place(&l->read)) = l->answer;
     l->is_handed = false;
     set_place(&l->read, l->end);
@@ -251,6 +260,7 @@ static long read_line(void *context, char *buffer, size_t size)
 
 void takt_lines_open(struct lines *l, struct source *source)
 {
+    TAKT_ASSERT(!get_flag(&l->active));
     l->is_handed = false;
     set_flag(&l->ends, false);
     set_place(&l->cause, (uint32_t)TAKT_OK);

@@ -1,6 +1,7 @@
 /*
  * Bytes that act at once, wherever they stand in the text.
  */
+#include "base/assert.h"
 #include "console/console_private.h"
 
 /* Control characters and those above ASCII. */
@@ -47,6 +48,7 @@ static void change_override(struct console *c, enum panel_id id, unsigned step)
     int64_t value = WHOLE;
     int64_t least = takt_panel_least(row);
 
+    TAKT_ASSERT(id < REGISTER_COUNT);
     look(c, &now);
     if (step > 0)
         value = (int64_t)now.value[id] + steps[step];
@@ -63,6 +65,7 @@ static void set_rapid(struct console *c, unsigned step)
 {
     static const int64_t values[] = {1000, 500, 250};
 
+    TAKT_ASSERT(step < sizeof values / sizeof values[0]);
     (void)takt_console_order(c, REGISTER_RAPID_OVERRIDE, values[step]);
 }
 

@@ -1,5 +1,6 @@
 #include "console/reply.h"
 
+#include "base/assert.h"
 #include "base/decimal.h"
 
 /* Characters of a number of 64 bits, with sign and point. */
@@ -14,6 +15,7 @@ void takt_reply_send(struct reply *r)
 
 static void put(struct reply *r, char c)
 {
+    TAKT_ASSERT(r->length <= sizeof r->text);
     if (r->length == sizeof r->text)
         takt_reply_send(r);
     r->text[r->length++] = c;

@@ -1,6 +1,7 @@
 /*
  * Reports: where the machine is and what counts.
  */
+#include "base/assert.h"
 #include "console/console_private.h"
 
 #define MM_PER_INCH 25.4
@@ -197,6 +198,7 @@ static bool tell(struct console *c, enum console_fact fact, double value[AXIS_CO
 /* A G word by its number times ten. */
 static void g_word(struct console *c, uint32_t number_x10)
 {
+    TAKT_ASSERT(number_x10 < 10000);
     text(c, "G");
     number(c, number_x10 / 10);
     if (number_x10 % 10 != 0) {

@@ -2,6 +2,7 @@
  * Settings: what of the machine a sender asks for under Grbl's numbers. They are the machine file's and are read; two are of
  * the reports and may be set, until the next sender comes.
  */
+#include "base/assert.h"
 #include "base/decimal.h"
 #include "base/maths.h"
 #include "console/characters.h"
@@ -110,6 +111,7 @@ static double get_steps(const struct console *c, unsigned axis)
 {
     const struct machine_axis *a = &c->config.machine->axis[axis];
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return (a->drive_type == MACHINE_DRIVE_STEP ? a->steps_per_mm
                                                 : maths_abs(a->increments_per_mm)) /
            unit_of(a);
@@ -119,6 +121,7 @@ static double get_rate(const struct console *c, unsigned axis)
 {
     const struct machine_axis *a = &c->config.machine->axis[axis];
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return a->max_velocity_mm_s * unit_of(a) * S_PER_MIN;
 }
 
@@ -126,6 +129,7 @@ static double get_acceleration(const struct console *c, unsigned axis)
 {
     const struct machine_axis *a = &c->config.machine->axis[axis];
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return a->max_acceleration_mm_s2 * unit_of(a);
 }
 
@@ -133,6 +137,7 @@ static double get_travel(const struct console *c, unsigned axis)
 {
     const struct machine_axis *a = &c->config.machine->axis[axis];
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return (a->travel_max_mm - a->travel_min_mm) * unit_of(a);
 }
 

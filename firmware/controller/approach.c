@@ -1,5 +1,6 @@
 #include "controller/approach.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -35,6 +36,7 @@ static double time_for(const struct machine_axis *axis, double way_mm)
         maths_sqrt(PEAK_ACCELERATION * way_mm / axis->max_acceleration_mm_s2);
     const double by_jerk_s = takt_maths_cbrt(PEAK_JERK * way_mm / axis->max_jerk_mm_s3);
 
+    TAKT_ASSERT(way_mm >= 0.0 && axis->max_velocity_mm_s > 0.0);
     return maths_max(by_velocity_s, maths_max(by_acceleration_s, by_jerk_s));
 }
 
@@ -48,6 +50,7 @@ static bool is_away(const struct approach *approach, const struct machine *machi
 {
     const double way_mm = approach->to.at[i] - approach->at.at[i];
 
+    TAKT_ASSERT(i < AXIS_COUNT);
     return machine->axis[i].present && maths_abs(way_mm) * machine->resolution_per_mm > 1.0;
 }
 
@@ -87,6 +90,7 @@ static void make_cycle(struct approach *approach, struct point *setpoint)
     const double u = (double)++approach->cycle / (double)approach->cycles;
     const double part = u * u * u * (10.0 + u * (6.0 * u - 15.0));
 
+    TAKT_ASSERT(approach->cycle <= approach->cycles);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         setpoint->at[i] = approach->at.at[i] + approach->way_mm[i] * part;
     }

@@ -1,5 +1,6 @@
 #include "controller/controller.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "controller/controller_feed.h"
 #include "controller/controller_shape.h"
@@ -12,6 +13,7 @@
 
 static double cycle_s(const struct machine *machine)
 {
+    TAKT_ASSERT(machine->cycle_us > 0);
     return 1e-6 * (double)machine->cycle_us;
 }
 
@@ -106,6 +108,7 @@ static void hold_back(struct controller *c, const struct move *move)
 {
     struct move stop = *move;
 
+    TAKT_ASSERT(takt_path_has_room(&c->path));
     stop.kind = MOVE_DWELL;
     stop.dwell_s = 0.0;
     takt_path_push(&c->path, &stop);
@@ -124,6 +127,7 @@ static void take_held(struct controller *c)
 /* A move has been read: onto the path with it. */
 static void take_move(struct controller *c, struct move *move)
 {
+    TAKT_ASSERT(!c->program_ended);
     c->program_error.code = TAKT_OK;
     if (c->replays) {
         takt_replay_prepare(move);
@@ -260,6 +264,7 @@ void takt_controller_background(struct controller *c)
 
 static void controller_fail(struct controller *c, const struct diagnostic *fault)
 {
+    TAKT_ASSERT(fault->code != TAKT_OK);
     c->state = CONTROLLER_FAULTED;
     c->fault = *fault;
 }
@@ -379,6 +384,7 @@ static void follow_events(struct controller *c)
 /* No cycle was made, but events may stand before the end, and the end is one. */
 static void end_program(struct controller *c)
 {
+    TAKT_ASSERT(c->path.first != c->path.closed);
     follow_events(c);
     if (!c->keeps_outputs) {
         takt_outputs_apply(&c->outputs, &c->surface, &path_first(&c->path)->move);

@@ -1,5 +1,6 @@
 #include "controller/controller_probe.h"
 
+#include "base/assert.h"
 #include "base/handoff.h"
 #include "base/maths.h"
 
@@ -45,6 +46,7 @@ static bool is_found(const struct controller_probe *q, const struct inputs *inpu
 /* Until the axes rest, rest_at is where the drives have reported them at contact. */
 static void find(struct controller_probe *q, const struct controller_place *at)
 {
+    TAKT_ASSERT(!q->answer.contact);
     q->answer.contact = true;
     q->answer.contact_at = at->actual;
     q->answer.rest_at = at->reported;
@@ -133,6 +135,7 @@ static bool end_probing(struct controller_probe *q, const struct inputs *inputs,
 /* The axes rest before the move: the touch probes are told to look for its edge. */
 static void arm(struct controller_probe *q, struct drives *drives)
 {
+    TAKT_ASSERT(q->state == PROBE_HELD);
     if (!q->begun) {
         takt_drives_arm_probe(drives, q->move.probe_away);
         q->begun = true;
@@ -167,6 +170,7 @@ static bool end_waiting(struct controller_probe *q, const struct inputs *inputs)
     const bool level = (inputs->digital >> q->move.channel & 1U) != 0;
     const bool before = q->begun ? q->level_before : level;
 
+    TAKT_ASSERT(q->move.channel < OUTPUTS_DIGITAL_MAX);
     q->begun = true;
     q->level_before = level;
     if (is_reached(q->move.input_wait, before, level)) {

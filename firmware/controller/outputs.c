@@ -1,9 +1,9 @@
 #include "controller/outputs.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/program_limits.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define SECONDS_PER_MINUTE 60.0
@@ -11,10 +11,10 @@
 /* Maximum for a surface speed without one: above that of any spindle. */
 #define RPM_MAX 1e6
 
-static_assert(PROGRAM_DIGITAL_MAX + 1 == OUTPUTS_DIGITAL_MAX,
-              "a program knows the outputs there are");
-static_assert(PROGRAM_ANALOGUE_MAX + 1 == OUTPUTS_ANALOGUE_MAX,
-              "a program knows the outputs there are");
+_Static_assert(PROGRAM_DIGITAL_MAX + 1 == OUTPUTS_DIGITAL_MAX,
+               "a program knows the outputs there are");
+_Static_assert(PROGRAM_ANALOGUE_MAX + 1 == OUTPUTS_ANALOGUE_MAX,
+               "a program knows the outputs there are");
 
 static double sense_of(enum spindle_direction direction)
 {
@@ -54,6 +54,7 @@ static void turn_spindle(struct outputs *o, struct outputs_surface *surface, con
 
 static void set_output(struct outputs *o, const struct move *m)
 {
+    TAKT_ASSERT(m->channel < (m->analogue ? OUTPUTS_ANALOGUE_MAX : OUTPUTS_DIGITAL_MAX));
     if (m->analogue) {
         o->analogue[m->channel] = m->output;
     } else if (m->output != 0.0) {

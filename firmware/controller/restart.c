@@ -1,5 +1,6 @@
 #include "controller/restart.h"
 
+#include "base/assert.h"
 #include "controller/controller_feed.h"
 #include "controller/controller_shape.h"
 #include "controller/controller_steps.h"
@@ -88,6 +89,7 @@ static void be_faulted(struct controller *c)
 
 void takt_controller_stop_at_once(struct controller *c, enum takt_error reason)
 {
+    TAKT_ASSERT(reason != TAKT_OK);
     takt_drives_stop_at_once(&c->drives, reason);
     be_faulted(c);
 }

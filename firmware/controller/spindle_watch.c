@@ -1,5 +1,6 @@
 #include "controller/spindle_watch.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* Feedback is older than the command by less than this. */
@@ -13,6 +14,7 @@
 void takt_spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
                              double at_speed_s)
 {
+    TAKT_ASSERT(cycle_s > 0.0);
     *w = (struct spindle_watch){.cycle_s = cycle_s,
                                 .smoothing = cycle_s / (SPINDLE_SMOOTH_S + cycle_s),
                                 .load_limit_percent = load_limit_percent,
@@ -43,6 +45,7 @@ static void follow_speed(struct spindle_watch *w, double speed_rpm)
 {
     const double rev_s = maths_abs(speed_rpm) * (1.0 / SECONDS_PER_MINUTE);
 
+    TAKT_ASSERT(w->cycle_s > 0.0);
     if (rev_s == 0.0 && w->smooth_rev_s == 0.0) {
         return;
     }

@@ -1,9 +1,11 @@
 #include "controller/tool_changer.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 void takt_tool_changer_init(struct tool_changer *t, double cycle_s, double change_s)
 {
+    TAKT_ASSERT(cycle_s > 0.0 && change_s >= 0.0);
     *t = (struct tool_changer){.most = (uint32_t)takt_maths_ceil(change_s / cycle_s)};
 }
 

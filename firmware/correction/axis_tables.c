@@ -1,5 +1,6 @@
 #include "correction/axis_tables.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/edge.h"
 #include "correction/spline.h"
@@ -51,6 +52,7 @@ unsigned takt_axis_tables_sum(const struct axis_tables *tables, const struct poi
 {
     unsigned outside = 0;
 
+    TAKT_ASSERT(tables->count <= AXIS_TABLES_PAIRS_MAX);
     for (unsigned i = 0; i < tables->count; i++) {
         const struct axis_pair *pair = &tables->pair[i];
         unsigned beyond = 0;
@@ -66,6 +68,7 @@ unsigned takt_axis_tables_sum(const struct axis_tables *tables, const struct poi
 
 static bool refuse(struct diagnostic *wrong, enum takt_error code, uint8_t axis, double value)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     takt_diagnostic_set(wrong, code, 0, 0, &AXIS_LETTERS[axis], 1, value);
     return false;
 }
@@ -79,6 +82,7 @@ static void set_piece(const double *knot, const double *value, const double *ben
 {
     const double h = knot[1] - knot[0];
 
+    TAKT_ASSERT(h > 0.0);
     c[0] = (float)value[0];
     c[1] = (float)((value[1] - value[0]) / h - h * (2.0 * bend[0] + bend[1]) / 6.0);
     c[2] = (float)(0.5 * bend[0]);

@@ -1,4 +1,5 @@
 /* What tables over one axis take of the axes: bounds over all pieces. */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/axis_tables.h"
 #include "correction/edge.h"
@@ -25,6 +26,7 @@ static void add_cubic(struct cubic_bound *bound, const float c[4], double h)
     const double c3 = maths_abs((double)c[3]);
     const double first = c1 + h * (2.0 * c2 + 3.0 * h * c3);
 
+    TAKT_ASSERT(h > 0.0);
     raise(&bound->size, c0 + h * (c1 + h * (c2 + h * c3)));
     raise(&bound->first, first);
     raise(&bound->second, 2.0 * c2 + 6.0 * h * c3 + EDGE_SECOND_MAX * first / h);
@@ -41,6 +43,7 @@ static void add_pair(const struct axis_pair *pair, const struct cubic_bound *bou
     const double slope_s2 =
         bound->first * most->acceleration_mm_s2[pair->input] + NEED_MARGIN * bound->second * v * v;
 
+    TAKT_ASSERT(pair->input < AXIS_COUNT && pair->corrected < AXIS_COUNT);
     need->size_mm[pair->corrected] += bound->size;
     need->noise_mm[pair->corrected] += NEED_ROUNDING * bound->size;
     takt_need_add_slope(need, pair->corrected, pair->input, bound->first, most);

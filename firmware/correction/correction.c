@@ -1,11 +1,11 @@
 #include "correction/correction.h"
 
+#include "base/assert.h"
 #include "base/handoff.h"
 #include "base/maths.h"
 #include "correction/layer.h"
 #include "correction/setup.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define CORRECTION_DECLARE(NAME, name) extern const struct correction_layer takt_layer_##name;
@@ -16,7 +16,7 @@ CORRECTION_LAYERS(CORRECTION_DECLARE)
 static const struct correction_layer *const layers[] = {CORRECTION_LAYERS(CORRECTION_LIST)};
 #undef CORRECTION_LIST
 
-static_assert(CORRECTION_LAYERS_COUNT <= 8, "a move has a byte for the layers a program switches");
+_Static_assert(CORRECTION_LAYERS_COUNT <= 8, "a move has a byte for the layers a program switches");
 
 /* The layers that read tables. */
 #define LAYERS_OF_TABLES (1U << CORRECTION_AXES | 1U << CORRECTION_VOLUME)
@@ -51,6 +51,7 @@ static void begin_layer(struct correction *c, unsigned i)
 {
     const unsigned bit = 1U << i;
 
+    TAKT_ASSERT(i < CORRECTION_LAYERS_COUNT);
     memset(&c->notes[i], 0, sizeof(c->notes[i]));
     if (i == CORRECTION_VOLUME) {
         memset(&c->patches, 0, sizeof(c->patches));
@@ -78,6 +79,7 @@ void takt_correction_init(struct correction *c, const struct correction_settings
                           unsigned axes, double cycle_s, const struct correction_tables *tables,
                           const struct point *start)
 {
+    TAKT_ASSERT(cycle_s > 0.0 && axes != 0 && axes < 1U << AXIS_COUNT);
     memset(c, 0, sizeof(*c));
     c->settings = *settings;
     c->axes = axes;
@@ -141,6 +143,7 @@ static __attribute__((noinline)) void fade_layers(struct correction *c, unsigned
 /* New tables take the place of the old ones when nobody reads them any more. */
 static __attribute__((noinline)) void exchange_tables(struct correction *c)
 {
+    TAKT_ASSERT(c->pending != NULL);
     c->tables = c->pending;
     c->pending = NULL;
     begin_layer(c, CORRECTION_AXES);
@@ -153,6 +156,7 @@ static void exchange_setup(struct correction *c)
     const unsigned bit = 1U << CORRECTION_SETUP;
     const bool any = takt_setup_exchange(c, &c->notes[CORRECTION_SETUP]);
 
+    TAKT_ASSERT(c->setup_waits);
     c->present = any ? c->present | bit : c->present & ~bit;
     handoff_order();
     c->setup_waits = false;
@@ -265,11 +269,13 @@ void takt_correction_evaluate(const struct correction *c, const struct point *at
 
 void takt_correction_switch(struct correction *c, enum correction_layer_number layer, bool on)
 {
+    TAKT_ASSERT(layer < CORRECTION_LAYERS_COUNT);
     c->off = on ? c->off & ~(1U << layer) : c->off | 1U << layer;
 }
 
 void takt_correction_set_rise(struct correction *c, enum axis axis, double rise_k)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     c->rise_k[axis] = rise_k;
 }
 
@@ -290,6 +296,7 @@ unsigned takt_correction_get_present(const struct correction *c)
 
 const char *takt_correction_layer_name(enum correction_layer_number layer)
 {
+    TAKT_ASSERT(layer < CORRECTION_LAYERS_COUNT);
     return layers[layer]->name;
 }
 
@@ -325,6 +332,7 @@ static void add_noise(struct need *need, double cycle_s, unsigned i)
 {
     const double step_mm_s = 2.0 * need->noise_mm[i] / cycle_s;
 
+    TAKT_ASSERT(i < AXIS_COUNT && cycle_s > 0.0);
     need->velocity_mm_s[i] += step_mm_s;
     need->acceleration_mm_s2[i] += 2.0 * step_mm_s / cycle_s;
     need->jerk_mm_s3[i] += 4.0 * step_mm_s / (cycle_s * cycle_s);
@@ -391,6 +399,7 @@ void takt_correction_reserve(struct correction *c, const struct motion_bound *mo
 
 static double share_of(double need, double most)
 {
+    TAKT_ASSERT(need >= 0.0);
     return most > 0.0 ? need / most : 0.0;
 }
 
@@ -445,6 +454,7 @@ bool takt_correction_load(struct correction *c, const struct correction_tables *
 {
     struct need need;
 
+    TAKT_ASSERT(c->pending == NULL);
     need_with(c, tables, &need);
     if (exceeds_reserve(c, &need)) {
         enum axis axis;
@@ -476,6 +486,7 @@ void takt_correction_forget_setup(struct correction *c)
 
 void takt_correction_tell_setup(struct correction *c, unsigned which, double value)
 {
+    TAKT_ASSERT(which < CORRECTION_SETUP_VALUES);
     c->setup_told[which] = value;
 }
 
@@ -483,7 +494,7 @@ bool takt_correction_take_setup(struct correction *c)
 {
     struct need need;
 
-    assert(!c->setup_waits);
+    TAKT_ASSERT(!c->setup_waits);
     memcpy(c->setup_next.number, c->setup_told, sizeof(c->setup_told));
     takt_setup_prepare(&c->setup_next);
     weigh(c, &c->setup_next, &c->most, &need);

@@ -1,5 +1,7 @@
 #include "correction/edge.h"
 
+#include "base/assert.h"
+
 double takt_edge_hold(double position, double last, unsigned *outside)
 {
     if (position >= 0.0 && position <= last) {

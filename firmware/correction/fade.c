@@ -1,5 +1,6 @@
 #include "correction/fade.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /*
@@ -21,12 +22,14 @@
 
 void takt_fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s)
 {
+    TAKT_ASSERT(time_s >= 0.0 && cycle_s > 0.0);
     pace->cycle_s = cycle_s;
     pace->rate = FADE_DONE_X * cycle_s / maths_max(time_s, FADE_CYCLES_MIN * cycle_s);
 }
 
 static double per_s(const struct fade_pace *pace)
 {
+    TAKT_ASSERT(pace->rate > 0.0 && pace->cycle_s > 0.0);
     return pace->rate / pace->cycle_s;
 }
 

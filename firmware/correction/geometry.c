@@ -10,6 +10,7 @@
  */
 #include "correction/geometry.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -27,11 +28,13 @@ static const struct lean {
 
 static bool is_turning(const struct geometry *g, unsigned unit)
 {
+    TAKT_ASSERT(unit < g->chain.units);
     return g->chain.axis[unit] >= AXIS_LINEAR_COUNT;
 }
 
 static bool carries_tool(const struct geometry *g, unsigned unit)
 {
+    TAKT_ASSERT(unit < g->chain.units);
     return unit < g->chain.tool_units;
 }
 
@@ -73,6 +76,7 @@ static unsigned errors_of(const struct geometry *g, unsigned unit, const struct 
     float k[AXIS_COUNT] = {0.0F};
     const unsigned outside = takt_axis_tables_sum(&g->errors[unit], at, no_direction, 1.0F, k);
 
+    TAKT_ASSERT(unit < g->chain.units);
     for (unsigned i = 0; i < ERRORS; i++) {
         e[i] = (double)k[i];
     }
@@ -131,6 +135,7 @@ unsigned takt_geometry_take_back(const struct geometry *g, const struct point *a
     double deviation[AXIS_COUNT];
     const unsigned outside = takt_geometry_deviation(g, at, deviation);
 
+    TAKT_ASSERT(axes_end <= AXIS_COUNT);
     for (unsigned i = 0; i < axes_end; i++) {
         k[i] -= (float)(weight * deviation[i]);
     }
@@ -141,6 +146,7 @@ unsigned takt_geometry_take_back(const struct geometry *g, const struct point *a
 
 static struct need_jet jet_of(const struct need *errors, unsigned i)
 {
+    TAKT_ASSERT(i < AXIS_COUNT);
     return (struct need_jet){{errors->size_mm[i], errors->velocity_mm_s[i],
                               errors->acceleration_mm_s2[i], errors->jerk_mm_s3[i]}};
 }
@@ -169,6 +175,7 @@ static void add_own_turn(struct need *errors, unsigned axis, struct need *need)
     static const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
     const struct need_jet turn = jet_of(errors, axis);
 
+    TAKT_ASSERT(axis >= AXIS_LINEAR_COUNT && axis < AXIS_COUNT);
     takt_need_add_product(need, axis, &turn, &one);
     errors->size_mm[axis] = errors->velocity_mm_s[axis] = 0.0;
     errors->acceleration_mm_s2[axis] = errors->jerk_mm_s3[axis] = 0.0;

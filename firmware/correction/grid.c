@@ -1,5 +1,6 @@
 #include "correction/grid.h"
 
+#include "base/assert.h"
 #include "correction/grid_stencil.h"
 
 /* Where a point is in a grid: where its stencil begins, and the weights along each input. */
@@ -155,6 +156,7 @@ static unsigned add_any(const struct grid *grid, const struct point *at, float w
     unsigned outside = 0;
     float t;
 
+    TAKT_ASSERT(grid->inputs >= 2 && grid->inputs <= TABLE_INPUTS_MAX);
     for (unsigned i = 0; i < grid->inputs; i++) {
         place.first += takt_grid_find_cell(&grid->input[i], at, &t, &outside);
         takt_grid_set_weights(t, place.weight[i]);

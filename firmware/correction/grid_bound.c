@@ -4,6 +4,8 @@
  */
 #include "correction/grid_bound.h"
 
+#include "base/assert.h"
+
 /* How often to differentiate along each input; at most three times. */
 struct grid_order {
     unsigned along[TABLE_INPUTS_MAX];
@@ -106,6 +108,7 @@ static float largest(const struct grid *grid, const struct grid_order *order, un
     const float *from = grid->coefficient + component * grid->size;
     float most = 0.0F;
 
+    TAKT_ASSERT(component < GRID_COMPONENTS);
     do {
         struct taps taps[TABLE_INPUTS_MAX];
 
@@ -135,6 +138,7 @@ static unsigned index_of(unsigned a, unsigned b, unsigned c)
     sort(&a, &b);
     sort(&b, &c);
     sort(&a, &b);
+    TAKT_ASSERT(a <= b && b <= c);
     return a + b * (b + 1U) / 2U + c * (c + 1U) * (c + 2U) / 6U;
 }
 
@@ -149,6 +153,8 @@ static float bound_of(const struct grid *grid, unsigned component, unsigned a, u
     const unsigned by[] = {a, b, c};
     struct grid_order order = {{0}};
 
+    TAKT_ASSERT(component < GRID_COMPONENTS && is_input(grid, a) && is_input(grid, b) &&
+                is_input(grid, c));
     for (unsigned i = 0; i < 3; i++) {
         if (by[i] != GRID_NO_INPUT) {
             order.along[by[i]]++;
@@ -182,6 +188,7 @@ void takt_grid_bound_all(struct grid *grid)
 float takt_grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b,
                       unsigned c)
 {
+    TAKT_ASSERT(component < GRID_COMPONENTS);
     return grid->bound[component][index_of(a, b, c)];
 }
 

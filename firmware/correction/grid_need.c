@@ -1,4 +1,5 @@
 /* What following a grid takes of the axes: K as a function of time, differentiated three times. */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/edge.h"
 #include "correction/grid_bound.h"
@@ -20,6 +21,7 @@ struct sums {
 
 static unsigned corrected(const struct sums *s)
 {
+    TAKT_ASSERT(s->component < GRID_COMPONENTS);
     return s->component < AXIS_LINEAR_COUNT ? s->component : s->grid->turn_axis;
 }
 
@@ -124,6 +126,7 @@ void takt_grid_need(const struct grid *grid, const struct motion_bound *most, do
 {
     struct sums s = {.grid = grid, .most = most, .cycle_s = cycle_s, .need = need};
 
+    TAKT_ASSERT(cycle_s > 0.0);
     for (s.component = 0; s.component < GRID_COMPONENTS; s.component++) {
         if ((grid->components & 1U << s.component) != 0) {
             add_component(&s);

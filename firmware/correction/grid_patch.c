@@ -11,6 +11,7 @@
  */
 #include "correction/grid_patch.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/grid_bound.h"
 #include "correction/grid_stencil.h"
@@ -425,5 +426,6 @@ float takt_grid_patch_jerk(const struct grid *grid, float third, float speed_per
     const float first = (back + half) * ((float)GOING / 4.0F);
     const float second = back + half;
 
+    TAKT_ASSERT(third >= 0.0F && cycle_s > 0.0F);
     return (W3 * size + 3.0F * W2 * first + 3.0F * W1 * second) * third * speed * speed * speed;
 }

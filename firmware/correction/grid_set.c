@@ -1,13 +1,13 @@
 /* From a table's values to the coefficients of its spline. */
+#include "base/assert.h"
 #include "correction/grid.h"
 #include "correction/grid_bound.h"
 #include "correction/grid_patch.h"
 #include "correction/spline.h"
 
-#include <assert.h>
 #include <string.h>
 
-static_assert(TABLE_KNOTS_MAX <= SPLINE_KNOTS_MAX, "every line of a table is a spline");
+_Static_assert(TABLE_KNOTS_MAX <= SPLINE_KNOTS_MAX, "every line of a table is a spline");
 
 /* A table has one coefficient more than points at both ends of each line. */
 #define MARGIN 2U
@@ -49,6 +49,7 @@ static void transform_line(float *line, size_t stride, unsigned points)
     double bend[TABLE_KNOTS_MAX];
     const unsigned last = points - 1;
 
+    TAKT_ASSERT(points >= 2 && points <= TABLE_KNOTS_MAX);
     for (unsigned k = 0; k < points; k++) {
         knot[k] = k;
         value[k] = (double)line[(k + 1) * stride];
@@ -93,6 +94,7 @@ static void transform_along(struct grid *grid, unsigned along)
     const struct grid_input *input = &grid->input[along];
     struct index index = {{0}};
 
+    TAKT_ASSERT(along < grid->inputs);
     for (unsigned i = along + 1; i < grid->inputs; i++) {
         index.at[i] = 1;
     }
@@ -138,6 +140,7 @@ static bool set_inputs(struct grid *grid, const struct table *table)
 
 static unsigned component_of(uint8_t axis)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return axis < AXIS_LINEAR_COUNT ? axis : AXIS_LINEAR_COUNT;
 }
 
@@ -145,6 +148,7 @@ static void set_values(struct grid *grid, const struct table *table)
 {
     const uint32_t rows = takt_table_rows(table);
 
+    TAKT_ASSERT(grid->inputs == table->inputs);
     for (uint32_t row = 0; row < rows; row++) {
         struct index index;
         uint32_t rest = row;

@@ -7,6 +7,7 @@
  *
  * Errors of units, which act along the machine's chain, are tables over one axis too, and taken back with them.
  */
+#include "base/assert.h"
 #include "correction/layer.h"
 
 #define REVERSAL_MM 1e-6
@@ -29,6 +30,7 @@ static void follow_direction(const struct correction *c, struct layer_notes *not
     double *furthest = &notes->number[AXIS_COUNT + axis];
     const double ahead = *direction * (c->at->at[axis] - *furthest);
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     if (ahead > 0.0) {
         *furthest = c->at->at[axis];
     } else if (ahead < -REVERSAL_MM) {

@@ -7,6 +7,7 @@
  * The set-up is told with the table at psi = 0, and is what remains after the table has turned by K_psi.
  * A displacement may be millimetres, so this layer alone is summed in double precision.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/layer.h"
 #include "correction/setup.h"
@@ -25,6 +26,7 @@ static void turn(double m[SIDE][SIDE], unsigned about, double angle_rad)
     const unsigned second = (about + 2) % SIDE;
     double sine, cosine;
 
+    TAKT_ASSERT(about < SIDE);
     takt_maths_sincos(angle_rad, &sine, &cosine);
     for (unsigned j = 0; j < SIDE; j++) {
         const double u = m[first][j];
@@ -100,6 +102,7 @@ static bool has_table(const struct correction *c)
 /* The linear axis that the table turns about; those after it, in order, are its plane. */
 static unsigned about_of(const struct correction *c)
 {
+    TAKT_ASSERT(c->settings.turn_axis >= AXIS_A && c->settings.turn_axis < AXIS_COUNT);
     return c->settings.turn_axis - AXIS_A;
 }
 

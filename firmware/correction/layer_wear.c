@@ -14,6 +14,7 @@
  *
  * Length and time are counted per tool, on cutting moves. Corrections follow smoothly; d goes with the head at once.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/layer.h"
 
@@ -216,6 +217,7 @@ static struct need_jet direction_jet(const struct correction *c, const struct la
     const double *d = &notes->number[AT_0];
     const uint32_t head = c->settings.head_axis;
 
+    TAKT_ASSERT(i < AXIS_LINEAR_COUNT);
     if (head == AXIS_COUNT || head == AXIS_A + i) {
         return (struct need_jet){{maths_abs(d[i]), 0.0, 0.0, 0.0}};
     }

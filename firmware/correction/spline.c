@@ -1,6 +1,6 @@
 #include "correction/spline.h"
 
-#include <assert.h>
+#include "base/assert.h"
 
 /* One row of the system: lower M_{i-1} + middle M_i + upper M_{i+1} = right. */
 struct row {
@@ -76,7 +76,7 @@ static double beyond(double near, double far, double outer, double inner)
 
 void takt_spline_set_bends(unsigned count, const double *knot, const double *value, double *bend)
 {
-    assert(count >= 2 && count <= SPLINE_KNOTS_MAX);
+    TAKT_ASSERT(count >= 2 && count <= SPLINE_KNOTS_MAX);
     const unsigned last = count - 1;
 
     if (count == 2) {

@@ -1,9 +1,8 @@
 #include "correction/table.h"
 
+#include "base/assert.h"
 #include "base/decimal.h"
 #include "base/maths.h"
-
-#include <assert.h>
 
 /* Steps of a grid may differ by this part of a step: positions are written with a limited number of decimals. */
 #define TABLE_UNEVEN_MAX 1e-3
@@ -13,7 +12,7 @@
 
 /* More rows than any table can have: from here on they are not counted exactly, and nothing overflows. */
 #define TABLE_ROWS_COUNTED UINT32_C(0x100000)
-static_assert(TABLE_VALUES_MAX < TABLE_ROWS_COUNTED, "tables are counted exactly");
+_Static_assert(TABLE_VALUES_MAX < TABLE_ROWS_COUNTED, "tables are counted exactly");
 
 uint32_t takt_table_rows(const struct table *table)
 {
@@ -34,6 +33,7 @@ struct name {
 
 static void name_add(struct name *n, const char *text, size_t length)
 {
+    TAKT_ASSERT(n->length <= DIAGNOSTIC_WORD_MAX);
     for (size_t i = 0; i < length && n->length < DIAGNOSTIC_WORD_MAX; i++) {
         n->text[n->length++] = text[i];
     }
@@ -109,6 +109,7 @@ static bool refuse_axis(struct diagnostic *wrong, enum takt_error code, uint8_t 
 {
     const char word[] = {AXIS_LETTERS[axis], '\0'};
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return refuse(wrong, code, word, value);
 }
 
@@ -142,6 +143,7 @@ static uint32_t row_on_edge(const struct table *table, unsigned input, unsigned 
 {
     uint32_t row = knot;
 
+    TAKT_ASSERT(input < table->inputs);
     for (unsigned i = 0; i < input; i++) {
         row *= table->knots[i];
     }
@@ -154,6 +156,7 @@ static bool check_steps(const struct table *table, unsigned input, struct diagno
     const unsigned last = table->knots[input] - 1U;
     const double even = (knot[last] - knot[0]) / last;
 
+    TAKT_ASSERT(input < table->inputs);
     for (unsigned k = 1; k <= last; k++) {
         const uint32_t row = row_on_edge(table, input, k);
         const double off = maths_abs(knot[k] - knot[0] - k * even) / even;

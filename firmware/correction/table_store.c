@@ -2,7 +2,6 @@
 
 #include "base/crc32.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define STORE_MARK_SIZE 4
@@ -15,7 +14,7 @@
 
 static const uint8_t mark[STORE_MARK_SIZE] = {'T', 'K', 'T', '1'};
 
-static_assert(sizeof(double) == 8 && sizeof(float) == 4, "stored as IEEE-754");
+_Static_assert(sizeof(double) == 8 && sizeof(float) == 4, "stored as IEEE-754");
 
 static size_t knots_of(const struct table *table)
 {

@@ -12,10 +12,10 @@
  */
 #include "cutter_compensation/contour.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "cutter_compensation/nose.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* Crossings may be beyond the end of a way by this much. */
@@ -37,12 +37,14 @@ struct crossing {
 
 struct compensation_item *takt_contour_item(struct cutter_compensation *o, unsigned place)
 {
+    TAKT_ASSERT(place < COMPENSATION_ITEMS_MAX);
     return &o->item[(o->first + place) % COMPENSATION_ITEMS_MAX];
 }
 
 struct compensation_live *takt_contour_live(struct cutter_compensation *o,
                                             const struct compensation_item *item)
 {
+    TAKT_ASSERT(item->live < COMPENSATION_WAYS_MAX);
     return &o->live[item->live];
 }
 
@@ -55,6 +57,7 @@ static const uint8_t axes_turned[][AXIS_COUNT] = {
 
 void takt_contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT])
 {
+    TAKT_ASSERT(plane <= PLANE_YZ);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         turned[i] = p->at[axes_turned[plane][i]];
     }
@@ -62,6 +65,7 @@ void takt_contour_turned(enum plane plane, const struct point *p, double turned[
 
 void takt_contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p)
 {
+    TAKT_ASSERT(plane <= PLANE_YZ);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         p->at[axes_turned[plane][i]] = turned[i];
     }
@@ -90,14 +94,14 @@ static bool is_way(const struct compensation_item *i)
 
 void takt_contour_add(struct cutter_compensation *o, const struct compensation_item *item)
 {
-    assert(o->count < COMPENSATION_ITEMS_MAX);
+    TAKT_ASSERT(o->count < COMPENSATION_ITEMS_MAX);
     *takt_contour_item(o, o->count++) = *item;
 }
 
 static void append(struct cutter_compensation *o, struct compensation_piece *piece)
 {
     if (is_way(&piece->item)) {
-        assert(o->ways < COMPENSATION_WAYS_MAX);
+        TAKT_ASSERT(o->ways < COMPENSATION_WAYS_MAX);
         piece->item.live = (uint8_t)((o->live_first + o->ways++) % COMPENSATION_WAYS_MAX);
         o->live[piece->item.live] = piece->live;
     }
@@ -106,8 +110,10 @@ static void append(struct cutter_compensation *o, struct compensation_piece *pie
 
 void takt_contour_drop_first(struct cutter_compensation *o)
 {
+    TAKT_ASSERT(o->count > 0);
     if (is_way(takt_contour_item(o, 0))) {
         o->live_first = (o->live_first + 1) % COMPENSATION_WAYS_MAX;
+        TAKT_ASSERT(o->ways > 0);
         o->ways--;
     }
     o->first = (o->first + 1) % COMPENSATION_ITEMS_MAX;
@@ -132,6 +138,7 @@ static void remove_behind(struct cutter_compensation *o, unsigned place)
 {
     unsigned kept = place + 1;
 
+    TAKT_ASSERT(place < o->count);
     for (unsigned i = place + 1; i < o->count; i++) {
         const struct compensation_item *item = takt_contour_item(o, i);
 
@@ -267,6 +274,7 @@ static double gouge_before(struct cutter_compensation *o, unsigned place,
 {
     double gouge_mm = 0.0;
 
+    TAKT_ASSERT(place < o->count && radius_mm > 0.0);
     for (unsigned i = place; i > 0 && takt_contour_item(o, i)->kind == COMPENSATION_CORNER; i--) {
         const struct compensation_item *item = takt_contour_item(o, i - 1);
 
@@ -341,6 +349,7 @@ static bool meet_at(struct cutter_compensation *o, unsigned place, struct compen
     struct planar *k = &takt_contour_live(o, takt_contour_item(o, place))->way;
     struct trial t = {*k, piece->live.way};
 
+    TAKT_ASSERT(place < o->count);
     takt_planar_end_at(&t.k, c->end_mm, c->point);
     takt_planar_begin_at(&t.e, c->begin_mm, c->point);
     const bool far = neighbours && c->far;
@@ -361,6 +370,7 @@ static bool join_at(struct cutter_compensation *o, unsigned place, struct compen
     struct crossing found[2];
     unsigned count = 0;
 
+    TAKT_ASSERT(place < o->count);
     if (is_way(k)) {
         count = find_crossings(&takt_contour_live(o, k)->way, &piece->live.way, found);
     }

@@ -9,6 +9,7 @@
  */
 #include "cutter_compensation/corner.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -109,6 +110,7 @@ static void point_beside(const struct corner *c, double angle_rad, double left_m
 /* How far the tip of a sharp corner is from the circle: |d| (1 / cos(angle / 2) - 1) */
 static double tip_mm(const struct corner *c)
 {
+    TAKT_ASSERT(maths_abs(c->angle_rad) < MATHS_PI);
     return maths_abs(c->left_mm) * (1.0 / takt_maths_cos(0.5 * c->angle_rad) - 1.0);
 }
 
@@ -259,6 +261,7 @@ void takt_corner_turn(struct cutter_compensation *o, struct compensation_piece *
 {
     struct corner c = corner_between(o, &next->item, left_mm);
 
+    TAKT_ASSERT(left_mm != 0.0);
     if (is_blunt(&c) && turn_blunt(o, next, &c)) {
         return;
     }

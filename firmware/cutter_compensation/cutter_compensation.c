@@ -1,5 +1,6 @@
 #include "cutter_compensation/cutter_compensation.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "cutter_compensation/contour.h"
 #include "cutter_compensation/corner.h"
@@ -26,6 +27,7 @@ void takt_cutter_compensation_open(struct cutter_compensation *o,
 
 bool takt_cutter_compensation_warning(struct cutter_compensation *o, struct diagnostic *diagnostic)
 {
+    TAKT_ASSERT(o->warnings <= COMPENSATION_WARNINGS_MAX);
     if (o->warnings == 0) {
         return false;
     }
@@ -56,11 +58,13 @@ static bool is_compensated(const struct move *m)
 
 static double left_of(const struct move *m)
 {
+    TAKT_ASSERT(m->cutter_radius_mm >= 0.0);
     return m->cutter_side == CUTTER_LEFT ? m->cutter_radius_mm : -m->cutter_radius_mm;
 }
 
 static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, double value)
 {
+    TAKT_ASSERT(code != TAKT_OK);
     takt_diagnostic_set(d, code, line, 0, "", 0, value);
     return false;
 }
@@ -308,6 +312,7 @@ static uint32_t turns_of(const struct planar *way)
 
 static void set_arc(struct move *m, const struct planar *way, const double lead_mm[2])
 {
+    TAKT_ASSERT(way->arc);
     if (takt_planar_length(way) < ARC_MIN_MM) {
         m->kind = MOVE_FEED;
         return;
@@ -319,6 +324,7 @@ static void set_arc(struct move *m, const struct planar *way, const double lead_
 
 static void set_involute(struct move *m, const struct planar *way, const double lead_mm[2])
 {
+    TAKT_ASSERT(way->involute);
     if (takt_planar_length(way) < ARC_MIN_MM) {
         m->kind = MOVE_FEED;
         return;
@@ -400,6 +406,7 @@ static bool give_out(struct cutter_compensation *o, const struct program *p, str
     const bool checked = i->kind > COMPENSATION_PASSING ||
                          (i->kind == COMPENSATION_PASSING && is_compensated(&o->pattern));
 
+    TAKT_ASSERT(o->count > 0);
     finish_move(o, i, move);
     takt_contour_drop_first(o);
     if (checked && !check_travel(o, p, move, d)) {

@@ -1,5 +1,6 @@
 #include "cutter_compensation/planar.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "cutter_compensation/planar_involute.h"
 #include "geometry/involute.h"
@@ -35,6 +36,7 @@ static double angle_between(const double centre[2], const double a[2], const dou
     const double v[2] = {b[0] - centre[0], b[1] - centre[1]};
     const double angle = sense * takt_maths_atan2(planar_turn(u, v), planar_dot(u, v));
 
+    TAKT_ASSERT(sense == 1.0 || sense == -1.0);
     return angle < 0.0 ? angle + MATHS_TWO_PI : angle;
 }
 
@@ -42,6 +44,7 @@ static double angle_between(const double centre[2], const double a[2], const dou
 void takt_planar_set_arc(struct planar *c, const double from[2], const double to[2],
                          const double centre[2], double sense, unsigned turns)
 {
+    TAKT_ASSERT(turns >= 1);
     (void)takt_planar_set_line(c, from, to);
     c->arc = true;
     memcpy(c->centre, centre, sizeof(c->centre));

@@ -6,6 +6,7 @@
  * Circles (c, R) and (d, S), D = |d - c|:      along = (D^2 + R^2 - S^2) / (2 D) from c towards d,
  *                                              across = +- sqrt(R^2 - along^2)
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "cutter_compensation/planar_involute.h"
 
@@ -20,6 +21,7 @@
 static unsigned two_points(const double middle[2], const double direction[2], double h,
                            double points[2][2])
 {
+    TAKT_ASSERT(h >= 0.0);
     for (unsigned i = 0; i < 2; i++) {
         points[0][i] = middle[i] - h * direction[i];
         points[1][i] = middle[i] + h * direction[i];
@@ -30,6 +32,7 @@ static unsigned two_points(const double middle[2], const double direction[2], do
 /* sqrt(r^2 - d^2); 0 when d is hardly larger than r, negative when it is clearly. */
 static double half_chord(double r, double d)
 {
+    TAKT_ASSERT(r >= 0.0 && d >= 0.0);
     if (d >= r) {
         return d - r <= TOUCH_MM ? 0.0 : -1.0;
     }

@@ -16,6 +16,7 @@
  */
 #include "cutter_compensation/planar_involute.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -69,6 +70,7 @@ void takt_planar_involute_tangent(const struct planar *c, double unrolled_rad, d
 
 double takt_planar_involute_bend(const struct planar *c, double unrolled_rad)
 {
+    TAKT_ASSERT(c->involute && c->base_mm > 0.0);
     return way_of(c) * c->hand / maths_max(c->base_mm * unrolled_rad, RADIUS_MIN_MM);
 }
 
@@ -84,6 +86,7 @@ double takt_planar_involute_offset(struct planar *c, double left_mm)
 
 double takt_planar_involute_length(const struct planar *c)
 {
+    TAKT_ASSERT(c->involute && c->base_mm > 0.0);
     return 0.5 * c->base_mm * maths_abs(c->unrolled_to - c->unrolled_from) *
            (c->unrolled_to + c->unrolled_from);
 }
@@ -93,6 +96,7 @@ static bool unrolled_of(const struct planar *c, const double point[2], double *p
 {
     const double ratio = takt_planar_between(point, c->centre) / c->base_mm;
 
+    TAKT_ASSERT(c->base_mm > 0.0);
     *phi = ratio > 1.0 ? maths_sqrt((ratio - 1.0) * (ratio + 1.0)) : 0.0;
     return ratio > 1.0;
 }
@@ -208,6 +212,7 @@ static bool side_of(const struct search *s, double phi, double *side_mm)
 
 static double bisect(const struct search *s, double low, double high, double low_mm)
 {
+    TAKT_ASSERT(low <= high);
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = 0.5 * (low + high);
         double side_mm = 0.0;

@@ -1,3 +1,4 @@
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/emcy.h"
@@ -5,11 +6,10 @@
 #include "drive/drives_private.h"
 #include "drive/word.h"
 
-#include <assert.h>
 #include <string.h>
 
-static_assert((DRIVES_HISTORY & (DRIVES_HISTORY - 1)) == 0, "the history is indexed by a mask");
-static_assert(DRIVES_HISTORY > DRIVES_LATENCY_CYCLES, "the history is as long as the latency");
+_Static_assert((DRIVES_HISTORY & (DRIVES_HISTORY - 1)) == 0, "the history is indexed by a mask");
+_Static_assert(DRIVES_HISTORY > DRIVES_LATENCY_CYCLES, "the history is as long as the latency");
 
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
@@ -17,6 +17,7 @@ static void init_axis(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
     const unsigned bus = drives_bus_of(d, index);
+    TAKT_ASSERT(index < d->count);
     axis->is_paired = takt_target_pdo_members(d->on_bus[bus], axis->place, d->group) > 1;
     axis->reported = d->cycle - 1;
     axis->heartbeat = d->cycle - 1;
@@ -46,7 +47,9 @@ static void take_config(struct drives *d, unsigned index, const struct drives_co
 {
     struct drives_config_axis *own = &d->axis[index].config;
     const double units = config->velocity_units_per_mm_s;
-    assert(config->node >= NODE_MIN && config->node <= NODE_MAX && config->bus < CAN_BUSES_MAX);
+    TAKT_ASSERT(config->node >= NODE_MIN && config->node <= NODE_MAX &&
+                config->bus < CAN_BUSES_MAX);
+    TAKT_ASSERT(index < d->count);
     *own = *config;
     d->node[index] = config->node;
     d->axis[index].place = d->on_bus[drives_bus_of(d, index)]++;
@@ -84,7 +87,7 @@ static void count_buses(struct drives *d)
 
 void takt_drives_init(struct drives *d, const struct drives_config *config)
 {
-    assert(config->count <= AXIS_COUNT && config->cycle_us > 0);
+    TAKT_ASSERT(config->count <= AXIS_COUNT && config->cycle_us > 0);
     memset(d, 0, sizeof *d);
     memset(d->axis_of_node, AXIS_COUNT, sizeof d->axis_of_node);
     d->count = config->count;
@@ -141,6 +144,7 @@ static void leave_operation(struct drives *d, enum takt_error error)
 static void raise(struct drives *d, unsigned index, const struct word *word, enum takt_error error,
                   double value, const char *meaning)
 {
+    TAKT_ASSERT(error != TAKT_OK && index <= AXIS_COUNT);
     if (d->state == DRIVES_STOPPING && cuts_off(error))
         takt_drives_brake(d);
     if (d->state > DRIVES_ENABLED)
@@ -165,6 +169,7 @@ void takt_drives_name_node(struct word *word, unsigned bus, unsigned node)
 static void name_axis(const struct drives *d, unsigned index, struct word *word)
 {
     char letter[3] = {AXIS_LETTERS[d->axis[index].config.axis], '\0', '\0'};
+    TAKT_ASSERT(index < d->count && d->axis[index].config.axis < AXIS_COUNT);
     if (drives_is_second(d, index))
         letter[1] = '2';
     word->length = 0;
@@ -186,6 +191,7 @@ void takt_drives_raise(struct drives *d, unsigned index, enum takt_error error, 
 {
     struct word word;
 
+    TAKT_ASSERT(index < d->count);
     d->axis[index].lost = d->axis[index].lost || !can_follow(&d->axis[index], error);
     name_axis(d, index, &word);
     raise(d, index, &word, error, value, meaning);
@@ -202,6 +208,7 @@ void takt_drives_raise_object(struct drives *d, unsigned index, uint32_t object,
                               enum takt_error error, double value, const char *meaning)
 {
     struct word word;
+    TAKT_ASSERT(index < d->count);
     name_axis(d, index, &word);
     takt_word_add_text(&word, ", object ");
     takt_word_add_hex(&word, sdo_index(object), 4);
@@ -213,6 +220,7 @@ void takt_drives_raise_object(struct drives *d, unsigned index, uint32_t object,
 
 void takt_drives_complete_fault(struct drives *d, unsigned index, uint16_t code)
 {
+    TAKT_ASSERT(index < d->count);
     if (d->fault.code != TAKT_ERROR_DRIVE_FAULT || d->fault_axis != index || d->fault.value != 0 ||
         code == EMCY_NONE)
         return;
@@ -237,6 +245,7 @@ double takt_drives_axis_shown(const struct drives_axis *axis, double value_mm)
 
 double takt_drives_cycles_ms(const struct drives *d, uint32_t cycles)
 {
+    TAKT_ASSERT(d->cycle_us > 0);
     return 1e-3 * (double)d->cycle_us * cycles;
 }
 
@@ -252,6 +261,7 @@ const struct diagnostic *takt_drives_get_fault(const struct drives *d)
 
 void takt_drives_stop_at_once(struct drives *d, enum takt_error reason)
 {
+    TAKT_ASSERT(reason != TAKT_OK);
     if (d->state > DRIVES_STOPPING)
         return;
     if (d->state < DRIVES_STOPPING)
@@ -261,6 +271,7 @@ void takt_drives_stop_at_once(struct drives *d, enum takt_error reason)
 
 void takt_drives_stop_for(struct drives *d, const struct diagnostic *fault)
 {
+    TAKT_ASSERT(fault->code != TAKT_OK);
     if (d->state > DRIVES_STOPPING)
         return;
     if (d->state < DRIVES_STOPPING)
@@ -271,6 +282,7 @@ void takt_drives_stop_for(struct drives *d, const struct diagnostic *fault)
 uint32_t takt_drives_get_given_up(const struct drives *d, enum axis axis)
 {
     uint32_t given_up = 0;
+    TAKT_ASSERT(axis < AXIS_COUNT);
     for (unsigned i = 0; i < d->count; i++)
         if (d->axis[i].config.axis == axis)
             given_up |= d->axis[i].given_up;
@@ -279,6 +291,7 @@ uint32_t takt_drives_get_given_up(const struct drives *d, enum axis axis)
 
 void takt_drives_stop_on_path(struct drives *d, enum takt_error reason)
 {
+    TAKT_ASSERT(reason != TAKT_OK);
     if (d->state > DRIVES_ENABLED)
         return;
     takt_diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);

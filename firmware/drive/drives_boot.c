@@ -5,13 +5,13 @@
  * Hardly anything of that is required. What a drive refuses to be told is read, for it may be so already; if it is not,
  * it is given up (enum drives_given_up), or the one thing that cannot be done without is a fault.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
 #include "canopen/sync.h"
 #include "drive/drives_private.h"
 
-#include <assert.h>
 #include <stddef.h>
 
 #define UINT32_LIMIT 4294967295.0
@@ -19,6 +19,7 @@
 
 void takt_drives_give_up(struct drives *d, unsigned index, enum drives_given_up what)
 {
+    TAKT_ASSERT(index < d->count);
     d->axis[index].given_up |= 1u << what;
 }
 
@@ -45,6 +46,7 @@ static const uint32_t asked[] = {
 bool takt_drives_next_ask(struct drives *d, struct drives_step *step)
 {
     bool checks_scaling = d->axis[d->at_axis].config.travel_per_turn_mm > 0;
+    TAKT_ASSERT(d->at_axis < d->count);
     if (d->at_step == (checks_scaling ? ASKED_COUNT : ASKED_SCALING))
         return false;
     *step = (struct drives_step){.object = asked[d->at_step]};
@@ -80,6 +82,7 @@ static void take_identity(struct drives *d, const struct drives_answer *answer)
 
 static uint16_t mode_bit(unsigned mode)
 {
+    TAKT_ASSERT(mode >= 1 && mode <= 16);
     return (uint16_t)(1u << (mode - 1));
 }
 
@@ -151,6 +154,7 @@ static void check_scaling(struct drives *d)
 
 void takt_drives_take_ask(struct drives *d, const struct drives_answer *answer)
 {
+    TAKT_ASSERT(d->at_axis < d->count);
     if (d->at_step == 0)
         take_type(d, answer);
     else if (d->at_step < ASKED_MODES)
@@ -213,6 +217,7 @@ static const struct setting settings[] = {
  */
 static void split_period(uint32_t cycle_us, uint32_t *value, int *exponent)
 {
+    TAKT_ASSERT(cycle_us > 0);
     *value = cycle_us;
     *exponent = -6;
     while (*value % 10 == 0 || *value > UINT8_MAX) {
@@ -277,7 +282,7 @@ static uint32_t value_of(const struct drives *d, unsigned number)
                                velocity_of(config, homing->zero_mm_s),
                                velocity_of(config, homing->acceleration_mm_s2),
                                home_offset_of(config)};
-    static_assert(sizeof values / sizeof values[0] == SET_COUNT, "a value of every setting");
+    _Static_assert(sizeof values / sizeof values[0] == SET_COUNT, "a value of every setting");
     return values[number];
 }
 
@@ -291,6 +296,7 @@ static bool is_mute(const struct drives *d)
 bool takt_drives_next_set(struct drives *d, struct drives_step *step)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
+    TAKT_ASSERT(d->at_axis < d->count);
     if (d->at_step == SET_GUARD && !is_mute(d))
         d->at_step = SET_LIFE + 1;
     if (d->at_step == SET_RAMPS && axis->follow_mode != CIA402_MODE_PROFILE_VELOCITY)
@@ -323,6 +329,7 @@ static void miss(struct drives *d, const struct drives_answer *answer)
     const struct setting *setting = &settings[d->at_step];
     bool is_absent = sdo_says_absent(answer->abort_code);
     bool is_required = setting->given_up == REQUIRED || is_too_slow(d, answer);
+    TAKT_ASSERT(d->at_step < sizeof settings / sizeof settings[0]);
     if (setting->given_up == NOTHING)
         return;
     if (!is_required)
@@ -415,6 +422,7 @@ void takt_drives_take_set(struct drives *d, const struct drives_answer *answer)
     const struct setting *setting = &settings[d->at_step];
     uint32_t wanted = value_of(d, d->at_step) & mask_of(setting);
     bool is_refused = answer->abort_code != SDO_ABORT_NONE;
+    TAKT_ASSERT(d->at_axis < d->count && d->at_step < sizeof settings / sizeof settings[0]);
     if (!d->is_looking && is_refused && !sdo_says_absent(answer->abort_code)) {
         d->is_looking = true;
         return;

@@ -1,6 +1,7 @@
 /*
  * What is watched once a cycle, and the way to rest after a fault.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/emcy.h"
@@ -20,6 +21,7 @@ static void raise_state(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
     enum cia402_state state = takt_cia402_state(axis->statusword);
+    TAKT_ASSERT(index < d->count);
     if (state == CIA402_FAULT || state == CIA402_FAULT_REACTION)
         takt_drives_raise_reported(d, index, axis->emcy_code);
     else
@@ -35,6 +37,7 @@ static inline bool is_silent(const struct drives *d, const struct drives_axis *a
 static void raise_link(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
+    TAKT_ASSERT(index < d->count);
     if (!cia402_is_enabled(axis->statusword))
         raise_state(d, index);
     else if (is_silent(d, axis))
@@ -135,6 +138,7 @@ void takt_drives_watch_stop(struct drives *d)
 {
     bool at_rest = true;
     bool leaves_path = false;
+    TAKT_ASSERT(d->state == DRIVES_STOPPING);
     for (unsigned i = 0; i < d->count; i++) {
         bool moves = setpoint_moves(d, i);
         at_rest = at_rest && !moves;
@@ -177,6 +181,7 @@ static bool rests(const struct drives *d, struct drives_axis *axis)
 void takt_drives_watch_brakes(struct drives *d)
 {
     bool all = true;
+    TAKT_ASSERT(d->state == DRIVES_BRAKING);
     for (unsigned i = 0; i < d->count; i++)
         all = rests(d, &d->axis[i]) && all;
     if (all || d->stop_cycles++ >= d->brake_timeout_cycles)

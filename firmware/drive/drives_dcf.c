@@ -5,6 +5,7 @@
  *
  *     compare each object's last entry --one differs--> write all entries
  */
+#include "base/assert.h"
 #include "canopen/concise_dcf.h"
 #include "drive/drives_private.h"
 
@@ -37,6 +38,7 @@ bool takt_drives_ask_dcf(struct drives *d)
     const uint8_t node = d->node[d->at_axis];
     struct concise_dcf_entry entry;
     uint32_t behind;
+    TAKT_ASSERT(d->at_axis < d->count);
     if (d->axis[d->at_axis].config.dcf == NULL || !find_entry(d, &entry, &behind))
         return false;
     if (d->dcf.writes)

@@ -6,6 +6,7 @@
  *              node 1 | RTR node 2 | RTR      node 1 | RTR
  *                 answer       answer            answer, its toggle bit changed
  */
+#include "base/assert.h"
 #include "drive/drives_private.h"
 
 #include <stddef.h>
@@ -21,6 +22,7 @@ uint32_t takt_drives_guard_cycles(const struct drives *d)
 /* Rounded up: the node must not be told less than passes. */
 uint32_t takt_drives_guard_ms(const struct drives *d)
 {
+    TAKT_ASSERT(d->cycle_us > 0);
     return (takt_drives_guard_cycles(d) * d->cycle_us + 999) / 1000;
 }
 
@@ -37,6 +39,7 @@ static const struct drives_guard *guard_of(const struct drives *d, unsigned k, u
 {
     const bool is_drive = k < d->count;
     const unsigned io = k - d->count;
+    TAKT_ASSERT(k < d->count + d->io_count);
     *bus = is_drive ? drives_bus_of(d, k) : drives_io_bus_of(d, io);
     *node = is_drive ? d->node[k] : d->wiring[io].node;
     if (!(is_drive ? d->axis[k].started : d->io[io].started))

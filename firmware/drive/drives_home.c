@@ -4,6 +4,7 @@
  *
  *     statusword bits 13 12 10:  0 0 0 under way,  0 1 1 done,  0 0 1 idle,  1 x x error
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "drive/drives_private.h"
@@ -62,6 +63,7 @@ static bool is_late(const struct drives *d)
 
 void takt_drives_enter_enabled(struct drives *d)
 {
+    TAKT_ASSERT(d->state == DRIVES_STARTING);
     d->state = DRIVES_ENABLED;
     for (unsigned i = 0; i < d->count; i++)
         for (unsigned k = 0; k < DRIVES_HISTORY; k++)
@@ -122,6 +124,7 @@ static void begin_homing(struct drives *d)
 static bool shows_mode(struct drives *d)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
+    TAKT_ASSERT(d->at_axis < d->count || d->sdo.result == SDO_IDLE);
     if (d->sdo.result == SDO_ABORTED)
         takt_drives_give_up(d, d->at_axis, DRIVES_NO_MODE_DISPLAY);
     return d->sdo.result == SDO_ABORTED ||
@@ -177,6 +180,7 @@ static bool is_mirrored(const struct drives_axis *axis)
 static void take_home(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
+    TAKT_ASSERT(index < d->count && !d->axis[index].homed);
     axis->homed = true;
     if (is_mirrored(axis))
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HOME_OFFSET,
@@ -190,6 +194,7 @@ static void follow_homing(struct drives *d, unsigned index)
     bool is_told = axis->controlword == (CIA402_ENABLE_OPERATION | CIA402_START_HOMING);
     bool is_done = is_told && (axis->statusword & done) == done;
     double since_ms = takt_drives_cycles_ms(d, d->phase_cycles);
+    TAKT_ASSERT(index < d->count);
     if (is_told && !is_done)
         axis->homing_seen = true;
     if (is_told && since_ms >= HOMING_SHOWN_MS && axis->statusword & CIA402_HOMING_ERROR)

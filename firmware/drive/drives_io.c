@@ -8,13 +8,13 @@
  *
  *     BOOT, with the drives; DRIVES_IO: asked and told, one node after the other; started, one a cycle; inputs have come
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/emcy.h"
 #include "canopen/little_endian.h"
 #include "canopen/objects.h"
 #include "drive/drives_private.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define BITS_PER_BYTE 8
@@ -42,7 +42,7 @@ static uint16_t find_inputs(const struct io_wiring *wiring, unsigned mask, unsig
 
 void takt_drives_io_init(struct drives *d, const struct drives_config *config)
 {
-    assert(config->io_count <= IO_NODES_MAX);
+    TAKT_ASSERT(config->io_count <= IO_NODES_MAX);
     d->io_count = (uint8_t)config->io_count;
     d->wiring = config->wiring;
     for (unsigned i = 0; i < d->io_count; i++) {
@@ -60,6 +60,7 @@ void takt_drives_io_init(struct drives *d, const struct drives_config *config)
 static struct word name_of(const struct drives *d, unsigned i)
 {
     struct word word = {.length = 0};
+    TAKT_ASSERT(i < d->io_count);
     takt_drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
     return word;
 }
@@ -89,6 +90,7 @@ static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsig
 {
     struct word word = {.length = 0};
     unsigned bit = 0;
+    TAKT_ASSERT(bits != 0);
     while (!(bits >> bit & 1))
         bit++;
     takt_word_add_text(&word, "bit ");
@@ -103,6 +105,7 @@ static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsig
 static bool send_nmt(const struct drives *d, const struct can_port *port, unsigned i,
                      enum nmt_command command)
 {
+    TAKT_ASSERT(i < d->io_count && drives_io_bus_of(d, i) < CAN_BUSES_MAX);
     return takt_drives_send_nmt(&port[drives_io_bus_of(d, i)], command, d->wiring[i].node);
 }
 
@@ -211,6 +214,7 @@ static bool ask_next(struct drives *d)
  */
 static void take_refusal(struct drives *d, unsigned i)
 {
+    TAKT_ASSERT(i < d->io_count);
     d->io[i].is_mute = d->io[i].is_mute || (d->at_step == STEP_HEARTBEAT && d->heartbeat_ms > 0);
     if (d->at_step != STEP_WATCH && d->at_step != STEP_BY_SYNC && d->at_step != STEP_LIFE &&
         !(d->at_step == STEP_HEARTBEAT && d->io[i].is_mute))
@@ -228,6 +232,7 @@ static void take_value(struct drives *d, unsigned i, uint32_t value)
 {
     const struct io_wiring *wiring = &d->wiring[i];
     struct drives_io *io = &d->io[i];
+    TAKT_ASSERT(i < d->io_count);
     switch ((enum step)d->at_step) {
     case STEP_TYPE:
         if ((value & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_401)
@@ -362,6 +367,7 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
 {
     struct drives_io *io = &d->io[i];
     enum nmt_state state;
+    TAKT_ASSERT(i < d->io_count);
     if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&io->guard, frame))
@@ -375,6 +381,7 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
 static void take_emergency(struct drives *d, unsigned i, const struct can_frame *frame)
 {
     struct emcy emcy;
+    TAKT_ASSERT(i < d->io_count);
     if (takt_emcy_read(frame, &emcy) && emcy.code != EMCY_NONE && are_watched(d))
         raise(d, i, TAKT_ERROR_IO_FAULT, emcy.code, takt_emcy_text(emcy.code));
 }
@@ -384,6 +391,7 @@ void takt_drives_io_take(struct drives *d, unsigned index, const struct can_fram
     if (index == AXIS_COUNT)
         return;
     const unsigned i = index - INDEX_OF_IO(0);
+    TAKT_ASSERT(i < d->io_count);
     switch (node_function(frame->id)) {
     case PDO_TPDO1_FUNCTION:
         take_inputs(d, &d->io[i], frame);
@@ -406,6 +414,7 @@ static void check_silence(struct drives *d, unsigned i)
 {
     const struct drives_io *io = &d->io[i];
     const uint32_t silent = d->cycle - io->reported, heartbeat_age = d->cycle - io->heartbeat;
+    TAKT_ASSERT(i < d->io_count);
     if (io->by_sync && silent > d->answer_timeout_cycles)
         raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, silent), NULL);
     if (heartbeat_age > d->heartbeat_age_max_cycles)
@@ -418,6 +427,7 @@ static void check_inputs(struct drives *d, unsigned i)
     struct drives_io *io = &d->io[i];
     const unsigned low = ~(unsigned)io->levels;
     const unsigned opened = low & io->limit_bits & ~(unsigned)io->low_limits;
+    TAKT_ASSERT(i < d->io_count);
     io->low_limits = (uint16_t)(low & io->limit_bits);
     if (low & io->stop_bits)
         raise_bit(d, i, TAKT_ERROR_IO_STOP, low & io->stop_bits);
@@ -501,6 +511,7 @@ static void send_levels(struct drives *d, unsigned i, const struct can_port *por
 {
     struct can_frame frame = {.id = (uint16_t)(PDO_RPDO1_FUNCTION + d->wiring[i].node),
                               .length = d->io[i].output_bytes};
+    TAKT_ASSERT(i < d->io_count);
     little_endian_write16(frame.data, (uint16_t)levels);
     if (drives_send_frame(&port[drives_io_bus_of(d, i)], &frame))
         d->io[i].sent = (uint16_t)levels;
@@ -510,6 +521,7 @@ static void send_levels(struct drives *d, unsigned i, const struct can_port *por
 static int16_t analogue_of(const struct outputs *outputs, unsigned wired)
 {
     const double percent = wired > 0 ? outputs->analogue[wired - 1] : 0;
+    TAKT_ASSERT(wired <= OUTPUTS_ANALOGUE_MAX);
     return (int16_t)takt_maths_round(maths_clamp(percent, -PERCENT, PERCENT) *
                                      (INT16_MAX / PERCENT));
 }
@@ -521,6 +533,7 @@ static void send_analogues(const struct drives *d, unsigned i, const struct can_
     const unsigned count = d->io[i].analogues;
     struct can_frame frame = {.id = (uint16_t)(PDO_RPDO2_FUNCTION + d->wiring[i].node),
                               .length = (uint8_t)(2 * count)};
+    TAKT_ASSERT(i < d->io_count);
     for (unsigned k = 0; k < count; k++)
         little_endian_write16(frame.data + (size_t)2 * k,
                               (uint16_t)analogue_of(outputs, io_get_analogue(&d->wiring[i], k)));

@@ -1,5 +1,6 @@
 #include "drive/drives_layout.h"
 
+#include "base/assert.h"
 #include "canopen/cia402.h"
 #include "canopen/target_pdo.h"
 
@@ -51,6 +52,7 @@ void takt_drives_set_target_pdo(const struct drives *d, struct pdo *pdo)
 {
     const unsigned bus = drives_bus_of(d, d->at_axis);
     uint8_t node[AXIS_COUNT];
+    TAKT_ASSERT(d->at_axis < d->count);
     for (unsigned i = 0; i < d->count; i++)
         if (drives_bus_of(d, i) == bus)
             node[d->axis[i].place] = d->node[i];
@@ -70,6 +72,7 @@ static void take_received(struct drives *d)
                                            takt_drives_byte_of(pdo, takt_drives_target_of(axis))};
     bool is_better = axis->control_frame.length == 0 ||
                      (axis->control_frame.mode == DRIVES_NOWHERE && frame.mode != DRIVES_NOWHERE);
+    TAKT_ASSERT(d->at_axis < d->count);
     if (frame.control != DRIVES_NOWHERE && is_better)
         axis->control_frame = frame;
     if (frame.target == DRIVES_NOWHERE || axis->target_frame.length > 0)
@@ -82,6 +85,7 @@ static void take_received(struct drives *d)
 void takt_drives_count_bits(struct drives *d, unsigned length)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
+    TAKT_ASSERT(d->at_axis < d->count);
     axis->bits = (uint16_t)(axis->bits + drives_bits(d, length));
 }
 
@@ -104,6 +108,7 @@ static void take_transmitted(struct drives *d)
     bool is_timed = m->pass >= PASS_APART && pdo->transmission >= PDO_EVENT_MIN && m->is_timed;
     bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC || is_timed;
     bool is_taken = is_cyclic && (has_both || m->pass >= PASS_APART);
+    TAKT_ASSERT(d->at_axis < d->count);
     if (node_id(pdo->cob_id) != axis->config.node)
         return;
     if (is_taken && status != DRIVES_NOWHERE && axis->status_id == NO_TPDO) {

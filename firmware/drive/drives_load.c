@@ -1,4 +1,5 @@
 /* The frames of a cycle, and how much of the bus they take. */
+#include "base/assert.h"
 #include "canopen/target_pdo.h"
 #include "drive/drives_private.h"
 #include "drive/word.h"
@@ -16,6 +17,7 @@ unsigned takt_drives_cycle_frames(unsigned count, unsigned group, bool has_error
                                   uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
 {
     unsigned frames = 0;
+    TAKT_ASSERT(group > 0);
     if (count > AXIS_COUNT)
         count = AXIS_COUNT;
     length[frames++] = 0;
@@ -37,6 +39,7 @@ unsigned takt_drives_cycle_frames(unsigned count, unsigned group, bool has_error
  */
 static uint32_t classical_bits(uint32_t n)
 {
+    TAKT_ASSERT(n <= CAN_CLASSIC_MAX);
     return 47 + 8 * n + (34 + 8 * n - 1) / 4;
 }
 
@@ -62,6 +65,7 @@ uint32_t takt_drives_remote_bits(void)
 static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle_us)
 {
     double capacity_bits = 1e-6 * (double)cycle_us * (double)bitrate;
+    TAKT_ASSERT(capacity_bits >= 0.0);
     load->capacity_bits = (uint32_t)capacity_bits;
     load->percent = 100.0 * load->bits / capacity_bits;
     return load->percent <= 100.0;
@@ -99,6 +103,7 @@ void takt_drives_get_load(const struct drives *d, unsigned bus, struct drives_lo
 {
     unsigned error_length = 0;
     bool has_error = false;
+    TAKT_ASSERT(bus < CAN_BUSES_MAX);
     load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) +
                  takt_drives_io_bits(d, bus) + takt_drives_guard_bits(d, bus);
     for (unsigned i = 0; i < d->count; i++) {
@@ -118,6 +123,7 @@ void takt_drives_get_load(const struct drives *d, unsigned bus, struct drives_lo
 static unsigned add_pdo(struct drives_pdo pdo[], unsigned count, unsigned id, unsigned length,
                         enum drives_pdo_kind kind)
 {
+    TAKT_ASSERT(count < DRIVES_CYCLE_PDOS_MAX);
     pdo[count] = (struct drives_pdo){(uint16_t)id, (uint8_t)length, kind};
     return count + (length > 0);
 }
@@ -130,6 +136,7 @@ static unsigned add_axis(const struct drives *d, unsigned i, struct drives_pdo p
     bool is_one = axis->status_id == axis->position_id;
     uint8_t status = length_at_most(d, i, axis->status_end);
     uint8_t position = length_at_most(d, i, axis->position_end);
+    TAKT_ASSERT(i < d->count);
     if (!is_one)
         count = add_pdo(pdo, count, axis->status_id, status, DRIVES_PDO_REPORT);
     count = add_pdo(pdo, count, axis->position_id, is_one && status > position ? status : position,
@@ -146,6 +153,7 @@ static unsigned add_io(const struct drives *d, unsigned i, struct drives_pdo pdo
 {
     const struct drives_io *io = &d->io[i];
     const unsigned node = d->wiring[i].node;
+    TAKT_ASSERT(i < d->io_count);
     count = add_pdo(pdo, count, PDO_TPDO1_FUNCTION + node, io->input_bytes, DRIVES_PDO_INPUTS);
     count = add_pdo(pdo, count, PDO_RPDO1_FUNCTION + node, io->output_bytes, DRIVES_PDO_OUTPUTS);
     return add_pdo(pdo, count, PDO_RPDO2_FUNCTION + node, 2U * io->analogues, DRIVES_PDO_OUTPUTS);
@@ -155,6 +163,7 @@ unsigned takt_drives_get_pdos(const struct drives *d, unsigned bus,
                               struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
 {
     unsigned count = 0;
+    TAKT_ASSERT(bus < CAN_BUSES_MAX);
     for (unsigned i = 0; i < d->count; i++)
         if (drives_bus_of(d, i) == bus)
             count = add_axis(d, i, pdo, count);

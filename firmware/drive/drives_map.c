@@ -15,6 +15,7 @@
  * identifier, type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case
  * of its own, and what is in a frame beside what takt knows keeps the value that the drive has for it.
  */
+#include "base/assert.h"
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
 #include "drive/drives_layout.h"
@@ -69,6 +70,7 @@ static unsigned parameters_of(const struct drives_mapping *m)
 
 static void add(struct pdo *pdo, uint32_t object, bool is_wanted)
 {
+    TAKT_ASSERT(!is_wanted || pdo->mapping.count < PDO_MAPPED_MAX);
     if (is_wanted)
         pdo->mapping.object[pdo->mapping.count++] = object;
 }
@@ -76,6 +78,7 @@ static void add(struct pdo *pdo, uint32_t object, bool is_wanted)
 static void want_target(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
+    TAKT_ASSERT(d->at_axis < d->count);
     if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
         add(pdo, takt_drives_target_of(axis), true);
         return;
@@ -126,6 +129,7 @@ static void begin(struct drives *d)
     unsigned first = drives_is_transmitted(m) ? PDO_TPDO1_FUNCTION : PDO_RPDO1_FUNCTION;
     struct drives_axis *axis = &d->axis[d->at_axis];
     bool keeps = axis->config.keeps_settings;
+    TAKT_ASSERT(d->at_axis < d->count);
     memset(&m->pdo, 0, sizeof m->pdo);
     m->pdo.transmission = PDO_EVENT;
     m->pdo.cob_id = (uint16_t)(first + number_of(m) * PDO_NEXT_FUNCTION + d->node[d->at_axis]);

@@ -4,23 +4,22 @@
  *
  *     skew = actual position of the second - actual position of the first,      |skew| <= skew_max_mm
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "drive/drives_private.h"
-
-#include <assert.h>
 
 #define SQRT_3 1.7320508075688772
 
 void takt_drives_gantry_init(struct drives *d, const struct drives_config *config)
 {
-    assert(config->gantry_count <= DRIVES_GANTRIES_MAX);
+    TAKT_ASSERT(config->gantry_count <= DRIVES_GANTRIES_MAX);
     d->gantry_count = (uint8_t)config->gantry_count;
     for (unsigned i = 0; i < d->gantry_count; i++) {
         const struct drives_gantry *gantry = &config->gantry[i];
-        assert(gantry->first < config->count && gantry->second < config->count &&
-               config->axis[gantry->first].axis == config->axis[gantry->second].axis &&
-               config->axis[gantry->second].homing.zero_mm_s > 0 &&
-               config->axis[gantry->second].homing.acceleration_mm_s2 > 0);
+        TAKT_ASSERT(gantry->first < config->count && gantry->second < config->count &&
+                    config->axis[gantry->first].axis == config->axis[gantry->second].axis &&
+                    config->axis[gantry->second].homing.zero_mm_s > 0 &&
+                    config->axis[gantry->second].homing.acceleration_mm_s2 > 0);
         d->gantry[i] = *gantry;
     }
 }

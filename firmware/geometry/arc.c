@@ -16,6 +16,7 @@
  */
 #include "geometry/arc.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -34,6 +35,7 @@ void takt_plane_axes(enum plane plane, enum axis *first, enum axis *second)
 {
     static const unsigned char axes[3][2] = {{AXIS_X, AXIS_Y}, {AXIS_Z, AXIS_X}, {AXIS_Y, AXIS_Z}};
 
+    TAKT_ASSERT(plane <= PLANE_YZ);
     *first = (enum axis)axes[plane][0];
     *second = (enum axis)axes[plane][1];
 }
@@ -85,6 +87,7 @@ static double arc_sweep(double from_rad, double to_rad, bool clockwise, bool clo
 {
     double sweep = clockwise ? from_rad - to_rad : to_rad - from_rad;
 
+    TAKT_ASSERT(turns >= 1);
     if (sweep <= 0.0) {
         sweep += MATHS_TWO_PI;
     }
@@ -168,6 +171,7 @@ bool takt_curve_end_arc(struct curve *c, bool clockwise, unsigned turns)
         maths_abs(to.x - from.x) <= ARC_CLOSED_MM && maths_abs(to.y - from.y) <= ARC_CLOSED_MM;
     const double radius_end = spoke_length(to);
 
+    TAKT_ASSERT(c->kind == CURVE_ARC && turns >= 1);
     c->arc.radius_change_mm = radius_end - c->arc.radius_start_mm;
     c->arc.sweep_rad =
         arc_sweep(c->arc.angle_start_rad, takt_maths_atan2(to.y, to.x), clockwise, closed, turns);
@@ -317,6 +321,7 @@ void takt_arc_bound(const struct curve *c, struct curve_bounds *b)
     const double rw =
         w * maths_max(c->arc.radius_start_mm, c->arc.radius_start_mm + c->arc.radius_change_mm);
 
+    TAKT_ASSERT(c->length_mm > 0.0);
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double travel = maths_abs(c->slope.at[i]) * c->length_mm;
 

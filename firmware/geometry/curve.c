@@ -1,6 +1,7 @@
 /* Chooses the kind of curve: the one place that knows them all. A new kind is one file and one line in each switch. */
 #include "geometry/curve.h"
 
+#include "base/assert.h"
 #include "geometry/arc.h"
 #include "geometry/involute.h"
 #include "geometry/line.h"
@@ -90,6 +91,7 @@ void takt_curve_curvature(const struct curve *c, double s_mm, struct point *k)
 
 void takt_curve_bound(const struct curve *c, struct curve_bounds *b)
 {
+    TAKT_ASSERT(c->length_mm > 0.0);
     switch (c->kind) {
     case CURVE_LINE:
         takt_line_bound(c, b);
@@ -111,11 +113,13 @@ void takt_curve_bound(const struct curve *c, struct curve_bounds *b)
 
 double takt_curve_piece_end(const struct curve *c, double from_mm)
 {
+    TAKT_ASSERT(from_mm >= 0.0 && from_mm < c->length_mm);
     return c->kind == CURVE_INVOLUTE ? takt_involute_piece_end(c, from_mm) : c->length_mm;
 }
 
 void takt_curve_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece)
 {
+    TAKT_ASSERT(from_mm >= 0.0 && from_mm < to_mm && to_mm <= c->length_mm);
     if (c->kind == CURVE_INVOLUTE) {
         takt_involute_cut(c, from_mm, to_mm, piece);
     } else {

@@ -28,6 +28,7 @@
  */
 #include "geometry/involute.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -57,6 +58,7 @@ double takt_involute_turned(double distance_mm, double radius_mm)
 {
     const double ratio = distance_mm / radius_mm;
 
+    TAKT_ASSERT(radius_mm > 0.0);
     if (ratio <= 1.0) {
         return 0.0;
     }
@@ -90,6 +92,7 @@ static double fit_radius(const struct ends *e, double radius_mm)
     double slope;
     double f = excess(e, u, &slope);
 
+    TAKT_ASSERT(radius_mm > 0.0 && e->inner_mm > 0.0);
     if (f > 0.0 && slope > 0.0) { /* one step leads from the right of the root to its left */
         u = maths_max(least, u - f / slope);
     }
@@ -231,6 +234,7 @@ bool takt_curve_set_involute(struct curve *c, const struct point *start, const s
     enum axis first;
     enum axis second;
 
+    TAKT_ASSERT(base_radius_mm > 0.0);
     takt_plane_axes(plane, &first, &second);
     memset(c, 0, sizeof(*c));
     c->kind = CURVE_INVOLUTE;
@@ -267,6 +271,7 @@ double takt_involute_place(const struct curve *c, double unrolled_rad)
 {
     const struct curve_involute *i = &c->involute;
 
+    TAKT_ASSERT(i->square_rate_rad2_mm != 0.0);
     return (unrolled_rad * unrolled_rad - i->square_start_rad2) / i->square_rate_rad2_mm;
 }
 
@@ -363,6 +368,7 @@ void takt_involute_bound(const struct curve *c, struct curve_bounds *b)
 
 double takt_involute_cusp_acceleration(double cusp_rad)
 {
+    TAKT_ASSERT(cusp_rad >= 0.0);
     return maths_sqrt(1.0 + cusp_rad * cusp_rad);
 }
 
@@ -371,6 +377,7 @@ double takt_involute_cusp_jerk(double cusp_rad)
     const double along = 1.0 + 1.125 * cusp_rad * cusp_rad;
     const double across = 5.625 * cusp_rad;
 
+    TAKT_ASSERT(cusp_rad >= 0.0);
     return maths_sqrt(along * along + across * across);
 }
 
@@ -379,6 +386,7 @@ double takt_involute_step_max(const struct curve *c, double error_mm)
     const struct curve_involute *i = &c->involute;
     const double root = takt_maths_cbrt(6.75 * error_mm * maths_sqrt(1.125 * i->radius_mm));
 
+    TAKT_ASSERT(error_mm > 0.0);
     return root * root / i->plane_ratio;
 }
 
@@ -388,6 +396,7 @@ static double next_unrolled(double from_rad, double to_rad)
     const double ln = takt_maths_ln(to_rad / from_rad);
     const double pieces = takt_maths_ceil(maths_abs(ln) / PIECE_LN_RATIO);
 
+    TAKT_ASSERT(from_rad > 0.0 && to_rad > 0.0);
     return pieces > 1.0 ? from_rad * takt_maths_exp(ln / pieces) : to_rad;
 }
 
@@ -413,6 +422,7 @@ void takt_involute_cut(const struct curve *c, double from_mm, double to_mm, stru
 {
     struct curve_involute *i = &piece->involute;
 
+    TAKT_ASSERT(c->kind == CURVE_INVOLUTE);
     *piece = *c;
     piece->length_mm = to_mm - from_mm;
     i->square_start_rad2 += i->square_rate_rad2_mm * from_mm;
@@ -433,6 +443,7 @@ bool takt_involute_extreme(const struct curve *c, unsigned quarter, double *s_mm
     const double to = takt_involute_unrolled(c, i->outward ? c->length_mm : 0.0);
     double phi = i->hand * (quarter * MATHS_HALF_PI - i->heading_rad);
 
+    TAKT_ASSERT(quarter < 4 && c->kind == CURVE_INVOLUTE);
     phi += MATHS_TWO_PI * takt_maths_floor((to - phi) / MATHS_TWO_PI);
     *s_mm = maths_clamp(takt_involute_place(c, phi), 0.0, c->length_mm);
     return phi >= from;

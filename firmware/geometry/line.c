@@ -1,5 +1,6 @@
 #include "geometry/line.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -9,6 +10,7 @@ static double length_over(const struct point *delta, int from, int to)
 {
     double sum = 0.0;
 
+    TAKT_ASSERT(from >= 0 && from <= to && to <= AXIS_COUNT);
     for (int i = from; i < to; i++) {
         sum += delta->at[i] * delta->at[i];
     }

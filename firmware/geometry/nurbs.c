@@ -15,9 +15,9 @@
  */
 #include "geometry/nurbs.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* A span is halved so often at most: a curve that is not smooth even then has no direction there. */
@@ -47,7 +47,7 @@ struct place {
 
 void takt_nurbs_open(struct nurbs *n, unsigned order)
 {
-    assert(order >= NURBS_ORDER_MIN && order <= NURBS_ORDER_MAX);
+    TAKT_ASSERT(order >= NURBS_ORDER_MIN && order <= NURBS_ORDER_MAX);
     memset(n, 0, sizeof(*n));
     n->order = order;
 }
@@ -65,6 +65,7 @@ void takt_nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight)
 /* The span that the newest knot decides begins at this one. */
 static uint32_t span_of(const struct nurbs *n)
 {
+    TAKT_ASSERT(n->knots >= n->order);
     return n->knots - n->order;
 }
 
@@ -112,6 +113,7 @@ static void cut(const struct nurbs *n, double from, double to, struct part *part
 {
     const double u[2] = {from, to};
 
+    TAKT_ASSERT(from <= to);
     part->degree = n->order - 1;
     for (unsigned j = 0; j <= part->degree; j++) {
         blossom(n, u, j, part->point[j]);
@@ -175,6 +177,7 @@ static bool set_end(const struct place *p, unsigned end, struct curve_course *co
 {
     const double v = speed(p);
 
+    TAKT_ASSERT(end < 2);
     if (!(v > 0.0)) {
         return false;
     }

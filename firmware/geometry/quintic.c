@@ -16,6 +16,7 @@
  */
 #include "geometry/quintic.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -30,6 +31,7 @@
 
 static unsigned axis_of(const struct curve *c, unsigned i)
 {
+    TAKT_ASSERT(i < 2);
     return i == 0 ? c->quintic.first : c->quintic.second;
 }
 
@@ -134,6 +136,7 @@ static double binomial(unsigned n, unsigned k)
 {
     double value = 1.0;
 
+    TAKT_ASSERT(k <= n);
     for (unsigned i = 0; i < k; i++) {
         value = value * (double)(n - i) / (double)(i + 1);
     }

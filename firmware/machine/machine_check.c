@@ -1,5 +1,6 @@
 #include "machine/machine_check.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/node.h"
 #include "classic/classic.h"
@@ -31,6 +32,7 @@ struct checked {
 
 static bool refuse(const struct checked *c, enum takt_error code, double value, double limit)
 {
+    TAKT_ASSERT(code != TAKT_OK);
     takt_diagnostic_set(c->wrong, code, 0, 0, &c->letter, 1, value);
     takt_diagnostic_set_limit(c->wrong, limit);
     return false;
@@ -55,6 +57,7 @@ static bool check_limits(const struct checked *c, double cycle_s)
     const double acceleration = ROUNDING_ACCELERATION * c->farthest_mm / (cycle_s * cycle_s);
     const double jerk = ROUNDING_JERK * c->farthest_mm / (cycle_s * cycle_s * cycle_s);
 
+    TAKT_ASSERT(cycle_s > 0.0);
     if (c->axis->max_acceleration_mm_s2 < acceleration)
         return refuse(c, TAKT_ERROR_MACHINE_ACCELERATION, acceleration / c->unit, 0);
     if (c->axis->max_jerk_mm_s3 < jerk)
@@ -88,6 +91,7 @@ static bool check_node(const struct checked *c, const struct machine *machine, u
 {
     const uint8_t node = c->axis->drive_node;
 
+    TAKT_ASSERT(number < AXIS_COUNT);
     for (unsigned i = 0; i < number; i++) {
         if (machine->axis[i].present && machine->axis[i].drive_node == node &&
             machine->axis[i].drive_bus == c->axis->drive_bus) {
@@ -112,6 +116,7 @@ static bool check_axis(const struct machine *machine, unsigned i, struct diagnos
         .wrong = wrong,
     };
 
+    TAKT_ASSERT(i < AXIS_COUNT);
     return check_travel(&c) && check_limits(&c, PER_US * (double)machine->cycle_us) &&
            check_steps(&c) && check_home(&c) && check_node(&c, machine, i);
 }
@@ -122,6 +127,7 @@ static bool refuse_io(const struct machine *machine, unsigned number, enum takt_
 {
     const char name[] = {'i', 'o', ' ', (char)('1' + number)};
 
+    TAKT_ASSERT(number < IO_NODES_MAX);
     takt_diagnostic_set(wrong, code, 0, 0, name, sizeof name, machine->io[number].node);
     return false;
 }
@@ -169,6 +175,7 @@ static bool is_alone(const struct machine *machine, unsigned number)
                  !is_axis_node(machine, io->bus, io->node) &&
                  !is_gantry_node(machine, takt_machine_gantry_count(machine), io->bus, io->node);
 
+    TAKT_ASSERT(number < IO_NODES_MAX);
     for (unsigned i = 0; i < number; i++)
         alone = alone && !(machine->io[i].node == io->node && machine->io[i].bus == io->bus);
     return alone;
@@ -203,6 +210,7 @@ static bool gantry_is_well(const struct machine *machine, unsigned number)
                 !is_axis_node(machine, gantry->drive_bus, gantry->drive_node) &&
                 !is_gantry_node(machine, number, gantry->drive_bus, gantry->drive_node);
 
+    TAKT_ASSERT(number < MACHINE_GANTRIES_MAX);
     for (unsigned i = 0; i < number; i++)
         good = good && machine->gantry[i].axis != gantry->axis;
     return good && maths_abs(gantry->home_offset_mm *
@@ -215,6 +223,7 @@ static bool check_gantry_home(const struct machine *machine, unsigned number,
 {
     const struct machine_gantry *gantry = &machine->gantry[number];
 
+    TAKT_ASSERT(number < MACHINE_GANTRIES_MAX);
     if (gantry->is_reversed == 0 || gantry->home_method != 0 ||
         machine->axis[gantry->axis].home_method > 0)
         return true;
@@ -250,6 +259,7 @@ bool takt_machine_predict_load(const struct machine *machine, unsigned bus,
                                            .rates = takt_machine_get_rates(machine),
                                            .no_error_pdo = machine->error_pdo == 0};
 
+    TAKT_ASSERT(machine->cycle_us > 0);
     return takt_drives_predict_whole_load(&traffic, machine->cycle_us, load);
 }
 

@@ -1,5 +1,7 @@
 #include "modbus/modbus.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 enum function {
@@ -50,6 +52,7 @@ static enum modbus_exception check_range(uint16_t address, uint16_t count, uint1
 /* An exception is answered by the function with its top bit set, and the code. */
 static size_t finish(const struct exchange *x, enum modbus_exception exception, size_t length)
 {
+    TAKT_ASSERT(exception != MODBUS_GOOD || length <= MODBUS_PDU_MAX);
     x->reply[0] = x->request[0];
     if (exception == MODBUS_GOOD)
         return length;

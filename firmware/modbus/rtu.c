@@ -1,5 +1,6 @@
 #include "modbus/rtu.h"
 
+#include "base/assert.h"
 #include "modbus/crc.h"
 
 #include <string.h>
@@ -13,6 +14,7 @@
 
 uint32_t takt_modbus_rtu_gap_us(uint32_t bauds, uint32_t bits)
 {
+    TAKT_ASSERT(bauds > 0);
     if (bauds > FAST_BAUDS)
         return FAST_GAP_US;
     /* 3.5 bits 1e6 / bauds, rounded up */
@@ -32,6 +34,7 @@ static bool is_whole(const struct modbus_rtu *rtu)
 {
     uint16_t crc;
 
+    TAKT_ASSERT(rtu->length <= sizeof rtu->frame);
     if (rtu->length < FRAME_MIN || rtu->lost)
         return false;
     crc = takt_crc16(rtu->frame, rtu->length - 2);
@@ -47,6 +50,7 @@ static size_t answer(struct modbus_rtu *rtu, uint8_t *reply)
     size_t length;
     uint16_t crc;
 
+    TAKT_ASSERT(rtu->length >= FRAME_MIN && rtu->length <= sizeof rtu->frame);
     if (unit != rtu->unit && unit != MODBUS_RTU_BROADCAST)
         return 0;
     length = 1 + takt_modbus_answer(&rtu->map, rtu->frame + 1, request, reply + 1);

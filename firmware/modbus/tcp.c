@@ -1,5 +1,7 @@
 #include "modbus/tcp.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 /* Where the length stands, and what it counts: unit and PDU. */
@@ -18,6 +20,7 @@ static bool fill(struct modbus_tcp *tcp, size_t length, const uint8_t **data, si
 {
     size_t missing = length - tcp->length;
 
+    TAKT_ASSERT(length <= sizeof tcp->frame && tcp->length <= length);
     if (missing > *size)
         missing = *size;
     memcpy(tcp->frame + tcp->length, *data, missing);
@@ -40,6 +43,7 @@ static size_t answer(const struct modbus_tcp *tcp, const struct modbus_map *map,
         takt_modbus_answer(map, tcp->frame + MODBUS_TCP_HEADER, tcp->length - MODBUS_TCP_HEADER,
                            reply + MODBUS_TCP_HEADER);
 
+    TAKT_ASSERT(tcp->length >= MODBUS_TCP_HEADER && tcp->length <= sizeof tcp->frame);
     memcpy(reply, tcp->frame, MODBUS_TCP_HEADER);
     modbus_write16(reply + LENGTH_AT, (uint16_t)(length + 1));
     return MODBUS_TCP_HEADER + length;

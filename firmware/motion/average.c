@@ -1,5 +1,7 @@
 #include "motion/average.h"
 
+#include "base/assert.h"
+
 /*
  * The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a cycle. The inputs are not
  * written, which would take as long as the window is: until a box has had n new ones it counts the old ones up by step.
@@ -9,6 +11,7 @@ void takt_average_start(struct average *a, enum ramp_profile profile, uint32_t c
 {
     uint32_t first = 0;
 
+    TAKT_ASSERT(cycles >= 1 && cycles <= takt_ramp_profile_cycles_max(profile));
     a->boxes = takt_ramp_profile_boxes(profile);
     a->at = at;
     a->scale = 1;
@@ -27,6 +30,7 @@ void takt_average_start(struct average *a, enum ramp_profile profile, uint32_t c
         step *= n;
         a->scale *= n;
     }
+    TAKT_ASSERT(a->box[a->boxes - 1].end <= AVERAGE_INPUTS_MAX);
     a->product = (double)a->scale;
 }
 

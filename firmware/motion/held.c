@@ -4,6 +4,7 @@
  */
 #include "motion/held.h"
 
+#include "base/assert.h"
 #include "plan/path_unit.h"
 
 /* From where the setpoint is the trapezoidal reference goes on by itself, at the same feed. */
@@ -14,6 +15,7 @@ void takt_held_end(struct motion *m)
     const uint64_t at = path_start(m->path, m->mover.beside.hold.block) +
                         (uint64_t)(hold_at(&m->mover.beside.hold) + 0.5);
 
+    TAKT_ASSERT(m->holds);
     takt_reference_follow(l, at + step * ((uint64_t)l->window - 1) / 2,
                           (double)step / PATH_UNITS_PER_MM, m->setpoint);
     takt_average_start(&m->mover.average, m->path->limits.profile, l->cycles, l->at, step);
@@ -54,6 +56,7 @@ static void begin_hold(struct motion *m)
                           m->feed_before[1] * PATH_UNITS_PER_MM};
     const bool anew = !m->looks;
 
+    TAKT_ASSERT(!m->holds);
     m->looks = may_hold(m);
     m->holds =
         m->looks && takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, at, way, anew);

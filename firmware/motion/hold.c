@@ -26,6 +26,7 @@
  */
 #include "motion/hold.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "motion/hold_axes.h"
 #include "plan/path_unit.h"
@@ -80,6 +81,7 @@ static void read_piece(struct hold *h, const struct path *path, uint32_t block)
     struct hold_piece *p = &h->piece[block % HOLD_PIECES_MAX];
     struct point c[4];
 
+    TAKT_ASSERT(ring_at(&path->ring, block)->smooth && h->axes <= AXIS_COUNT);
     takt_ring_control(&path->ring, block, c);
     for (unsigned i = 0; i < h->axes; i++) {
         const unsigned axis = h->axis[i];
@@ -108,6 +110,7 @@ static bool goes_on(const struct hold *h, const struct path *path, uint32_t bloc
 
 static void read_pieces(struct hold *h, const struct path *path)
 {
+    TAKT_ASSERT(h->end - h->block <= HOLD_PIECES_MAX);
     for (unsigned i = 0;
          i < READ_MAX && !h->whole && h->end != path->closed && h->end - h->block < HOLD_PIECES_MAX;
          i++) {
@@ -139,6 +142,7 @@ static void take_limits(struct hold *h, const struct plan_limits *limits)
 /* u + r t + q t^2/2 + w t^3/6 */
 static void advance(struct hold_state *s, double w, double t)
 {
+    TAKT_ASSERT(t >= 0.0);
     s->at += t * (s->rate + t * (0.5 * s->change + t * w * (1.0 / 6.0)));
     s->rate = maths_max(0.0, s->rate + t * (s->change + 0.5 * t * w));
     s->change += t * w;
@@ -219,6 +223,7 @@ static bool can_change(const struct hold *h, struct hold_trial *s, float to, flo
 {
     const float t = (to - s->change) / (w * (float)EASE_PARTS);
 
+    TAKT_ASSERT(w != 0.0f);
     for (unsigned i = 0; i < EASE_PARTS && s->change != to; i++) {
         const struct hold_trial from = *s;
 
@@ -342,10 +347,12 @@ static double go_to(struct hold *h, double to, double w, double left)
 {
     const double t = maths_min(left, (to - h->place.change) / w);
 
+    TAKT_ASSERT(w != 0.0 && left >= 0.0);
     advance(&h->place, w, t);
     h->place.change = t < left || maths_abs(to - h->place.change) < REST_PART * maths_abs(w)
                           ? to
                           : h->place.change;
+    TAKT_ASSERT(t >= 0.0);
     return left - t;
 }
 
@@ -356,6 +363,7 @@ static void go_on_ending(struct hold *h)
     const double from = h->place.at;
     double left = 1.0;
 
+    TAKT_ASSERT(e > 0.0);
     if (h->place.change > -h->ending.peak && h->ending.peak > 0.0) {
         left = go_to(h, -h->ending.peak, -e, left);
     }
@@ -418,6 +426,7 @@ static bool has_arrived(const struct hold *h, const struct path *path, const str
 /* Counts from the start of the block that the setpoint is in. */
 static void pass_blocks(struct hold *h)
 {
+    TAKT_ASSERT((int32_t)(h->end - h->block) > 0 && h->place.at >= 0.0);
     while (h->place.at >= 1.0 && h->block + 1 != h->end) {
         h->place.at -= 1.0;
         h->block++;
@@ -426,6 +435,7 @@ static void pass_blocks(struct hold *h)
 
 bool takt_hold_step(struct hold *h, const struct path *path, const struct reference *l, bool stop)
 {
+    TAKT_ASSERT(h->place.rate >= 0.0 && h->length > 0.0);
     read_pieces(h, path);
     h->clear = stop == h->stops ? h->clear : h->block;
     pass_clear(h, path);
@@ -456,6 +466,7 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
         h->end = path->first;
         h->whole = false;
         h->length = length_of(path, path->first);
+        TAKT_ASSERT(h->length > 0.0);
         h->per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
         h->clear = path->first;
         h->step = 1.0f;

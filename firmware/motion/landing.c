@@ -1,5 +1,6 @@
 #include "motion/landing.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* A landing takes fewer cycles than this, or is not begun yet. */
@@ -12,6 +13,7 @@ bool takt_landing_solve(const struct landing_case *l, struct landing_run *run)
 {
     const double w = l->feed;
 
+    TAKT_ASSERT(l->window >= 1.0 && l->acceleration > 0.0);
     if (!(w > 0.0)) {
         return false;
     }
@@ -23,6 +25,7 @@ bool takt_landing_solve(const struct landing_case *l, struct landing_run *run)
     if (!(n < RAMP_MAX) || !(end > 0.0) || w - end > n * l->acceleration * (1.0 + SLACK)) {
         return false;
     }
+    TAKT_ASSERT(end <= w * (1.0 + SLACK));
     run->ramp = (uint32_t)n;
     run->total = run->ramp + (uint32_t)l->window;
     run->feed_start = w;

@@ -1,5 +1,6 @@
 #include "motion/motion.h"
 
+#include "base/assert.h"
 #include "base/handoff.h"
 #include "base/maths.h"
 #include "motion/held.h"
@@ -7,7 +8,6 @@
 #include "plan/span.h"
 #include "smooth/single.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* A setpoint this close to a junction that it lands on in motion is on it: rounding of the trapezoidal reference's positions, path units. */
@@ -22,6 +22,7 @@
 void takt_motion_init(struct motion *m, struct path *path, const struct point *start,
                       bool proportional)
 {
+    TAKT_ASSERT(path->limits.cycle_s > 0.0 && path->first == path->pushed);
     memset(m, 0, sizeof(*m));
     m->path = path;
     m->cycle_s = path->limits.cycle_s;
@@ -50,7 +51,7 @@ static const struct block *first_block(const struct motion *m)
 /* One of the path's two ceilings: the cycle is in one, and may be going over to the other. */
 static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
 {
-    assert(which != m->path->spare);
+    TAKT_ASSERT(which != m->path->spare);
     return path_ceiling(m->path, which);
 }
 
@@ -58,6 +59,7 @@ const struct ceiling_request *takt_motion_wanted(struct motion *m)
 {
     const bool wanted = handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built);
 
+    TAKT_ASSERT(m->active < 2);
     m->path->spare = wanted ? 1 - m->active : PATH_NO_SPARE;
     return wanted ? &m->request : NULL;
 }
@@ -73,6 +75,7 @@ uint32_t takt_motion_ahead(struct motion *m)
         }
         m->ahead++;
     }
+    TAKT_ASSERT((int32_t)(m->path->closed - m->ahead) >= 0);
     return m->path->closed == m->ahead ? 0 : m->path->closed - m->ahead - 1;
 }
 
@@ -93,6 +96,7 @@ static struct ceiling_request take_request(const struct motion *m, uint32_t *res
 /* Over all blocks, or as far as there was room and the trapezoidal reference has not come near the end of that. */
 static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t reference)
 {
+    TAKT_ASSERT(c->complete || c->count > 0);
     if (c->complete) {
         return m->made_closed == m->path->closed;
     }
@@ -115,6 +119,7 @@ void takt_motion_build(struct motion *m)
     uint32_t restarts;
     const struct ceiling_request request = take_request(m, &restarts);
 
+    TAKT_ASSERT(m->wanted && !m->built);
     m->path->spare = PATH_NO_SPARE;
     if (is_unchanged(m, &request)) {
         handoff_set_flag(&m->wanted, false);
@@ -136,6 +141,7 @@ void takt_motion_build(struct motion *m)
 /* A ceiling of a path that has been dropped since is of no use. */
 static void offer_ceiling(struct motion *m)
 {
+    TAKT_ASSERT(m->built);
     m->made_holds = m->built_restarts == m->restarts;
     if (m->made_holds) {
         m->active = 1 - m->active;
@@ -171,6 +177,7 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     const uint64_t leave = piece_leave(m);
     const bool braking = m->reference.feed > 0.0 && m->reference.since_minus == 0;
 
+    TAKT_ASSERT((int32_t)(m->path->first - m->path->kept) >= 0);
     if (!braking || leave != m->asked_leave) {
         m->request.feed_ratio =
             wanted->feed_ratio > 0.0 ? wanted->feed_ratio : m->request.feed_ratio;
@@ -510,6 +517,7 @@ static bool end_path(struct motion *m)
     m->done = false;
     m->ending = false;
     m->restarts++;
+    TAKT_ASSERT(m->path->first == m->path->pushed);
     return true;
 }
 

@@ -1,5 +1,6 @@
 #include "motion/reference.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "motion/reference_private.h"
 
@@ -18,6 +19,7 @@ void takt_reference_init(struct reference *l, enum ramp_profile profile, uint64_
 
 void takt_reference_stand(struct reference *l, uint64_t at)
 {
+    TAKT_ASSERT(!l->run.active);
     l->at = at;
     l->feed = 0.0;
     l->standing = true;
@@ -102,6 +104,7 @@ static void run_landing(struct reference *l)
     struct landing_run *run = &l->run;
     double feed;
 
+    TAKT_ASSERT(run->cycle < run->total);
     run->cycle++;
     l->at = run->start + path_units(takt_landing_distance(run, run->cycle, &feed));
     count_changes(l, run->cycle <= run->ramp ? -1.0 : 0.0);
@@ -164,10 +167,12 @@ static void wait_for_more(struct reference *l)
 static void enter_span(struct reference *l, uint32_t k, uint64_t from,
                        struct reference_start *start)
 {
+    TAKT_ASSERT(l->feed >= 0.0);
     start->step = path_units(l->feed);
     l->standing = false;
     l->span = from;
     l->cycles = takt_ceiling_cycles(l->here.ceiling, k);
+    TAKT_ASSERT(l->cycles >= 1 && l->cycles <= takt_ramp_profile_cycles_max(l->profile));
     const uint32_t window = takt_ramp_profile_window_cycles(l->profile, l->cycles);
 
     l->window = (double)window;
@@ -188,6 +193,7 @@ static void enter_span(struct reference *l, uint32_t k, uint64_t from,
  */
 static bool leave_stop(struct reference *l, struct reference_start *start)
 {
+    TAKT_ASSERT(l->standing && l->feed == 0.0);
     for (unsigned i = 0; i < REFERENCE_PIECES_MAX && reference_has_piece(l); i++) {
         if (!reference_is_beyond(l->at, reference_leave_of(l, l->here.piece))) {
             enter_span(l, l->here.piece, l->at, start);

@@ -10,6 +10,7 @@
  * B(x) = u + 2 a (x_end - x) is feed squared from which the piece's end can be met (ceiling.h). A ceiling that the
  * setpoint has not left yet, and every one up to s' + N w', binds w' as well.
  */
+#include "base/assert.h"
 #include "motion/reference_private.h"
 
 #include "base/maths.h"
@@ -120,6 +121,7 @@ static uint64_t rest_position(const struct reference *l, uint32_t k)
     const uint64_t leave = reference_leave_of(l, k);
     const bool same = maths_abs((double)(int64_t)(end - leave)) <= END_UNITS;
 
+    TAKT_ASSERT(k < l->here.ceiling->count);
     return reference_piece(l, k)->stop || same ? leave : end;
 }
 
@@ -173,6 +175,7 @@ static double feed_to_wait(const struct reference *l, double top)
     const double m = a * (OPEN_CYCLES + 0.5);
     const double gap_mm = c->end_mm[c->count - 1] - path_mm(c->origin, l->at) - 0.5 * l->feed;
 
+    TAKT_ASSERT(l->here.ceiling->count > 0);
     if (top * top <= 2.0 * (a * gap_mm - m * top)) {
         return top;
     }
@@ -273,6 +276,7 @@ static double feed_to_land(const struct reference *l, double v)
     double low = l->feed;
     double high = v;
 
+    TAKT_ASSERT(v >= l->feed);
     if (!has_landing(l) || can_land_later(l, v)) {
         return v;
     }
@@ -397,6 +401,7 @@ static double feed_to_halt(const struct reference *l, double top)
     const double m = a * (l->window + 0.5);
     const double root = m * m + 2.0 * a * (path_mm(l->at, l->halt.end) - 0.5 * l->feed);
 
+    TAKT_ASSERT(l->halt.found);
     return root > 0.0 ? maths_min(top, maths_sqrt(root) - m) : 0.0;
 }
 

@@ -26,13 +26,12 @@
  * brought the trapezoidal reference to such a stop too fast: 25 times the acceleration, and back on the path. Windows that a stop had
  * made were promised to spans that were none when it was taken back.
  */
+#include "base/assert.h"
 #include "motion/reference_private.h"
 
 #include "base/maths.h"
 #include "plan/path.h"
 #include "plan/span.h"
-
-#include <assert.h>
 
 /* Blocks that are gone on by in a cycle, at most: twice what the trapezoidal reference can pass in it (plan/block.c). */
 #define BLOCKS_MAX 16
@@ -44,6 +43,7 @@ bool takt_reference_has_halted(const struct reference *l)
 
 void takt_reference_leave_halt(struct reference *l)
 {
+    TAKT_ASSERT(takt_reference_has_halted(l));
     l->halt.left = l->halt.end;
     l->halt.found = false;
 }
@@ -104,6 +104,7 @@ double takt_reference_halt_acceleration(const struct reference *l)
 {
     const double gap = path_mm(l->at, l->halt.end) - l->feed * waiting(l);
 
+    TAKT_ASSERT(l->halt.begun);
     return is_bound(l) ? maths_min(free_acceleration(l), 0.5 * reference_square(l->feed) / gap)
                        : junction_acceleration(l);
 }
@@ -127,9 +128,11 @@ static void look_at(struct reference *l, const struct path *path, uint32_t block
 {
     const double a = takt_ceiling_block_acceleration(path, block, l->cycles);
 
+    TAKT_ASSERT(path_at(path, block)->motion);
     l->halt.block = block;
     l->halt.end = path_end(path, block);
     l->halt.a = begins ? a : maths_min(l->halt.a, a);
+    TAKT_ASSERT(l->halt.a > 0.0);
 }
 
 /* From the setpoint's block on, or the one behind if that ends where the span starts. */
@@ -163,7 +166,7 @@ static bool find_end(struct reference *l, const struct ceiling *c)
 {
     const bool passed = (int32_t)(l->halt.block - c->path->first) < 0;
 
-    assert(c->count > 0); /* it is in a span */
+    TAKT_ASSERT(c->count > 0); /* it is in a span */
     if (!l->halt.begun || passed || l->halt.span != l->span) {
         begin(l, c->path);
     }

@@ -14,6 +14,7 @@
  * b half the window and a margin: for then all that the averages hold when the setpoint comes to S is that block's. At worst
  * it comes to rest at S, which is what it was promised.
  */
+#include "base/assert.h"
 #include "motion/reference_private.h"
 
 #include "base/maths.h"
@@ -214,6 +215,7 @@ static bool is_harmless(const struct reference *l)
 {
     const struct reference_place *p = &l->here;
 
+    TAKT_ASSERT(l->here.late);
     return l->feed == 0.0 ||
            (l->feed * reference_entry_cycles(l) <= path_mm(l->at, p->late_start) &&
             can_follow(l, p->ceiling, p->piece, false) &&
@@ -225,6 +227,7 @@ static void note_following(struct reference *l)
 {
     const uint64_t end = reference_leave_of(l, l->here.ceiling->count - 1);
 
+    TAKT_ASSERT(l->here.ceiling->count > 0);
     l->follows = true;
     l->known = reference_is_beyond(end, l->known) ? end : l->known;
     l->landing_feed = 0.0;
@@ -277,6 +280,7 @@ bool takt_reference_could_be(const struct reference *l, uint64_t at, double feed
     const double x = path_mm(c->origin, at);
     uint32_t k = l->here.piece;
 
+    TAKT_ASSERT(feed >= 0.0 && c != NULL);
     if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
         return false;
     }

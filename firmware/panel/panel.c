@@ -1,5 +1,6 @@
 #include "panel/panel.h"
 
+#include "base/assert.h"
 #include "panel/panel_private.h"
 
 #include <string.h>
@@ -19,6 +20,7 @@ void takt_panel_client_leave(struct panel_client *client)
 {
     struct panel *panel = client->panel;
 
+    TAKT_ASSERT(client->panel != NULL);
     /* Nobody else becomes the owner by it: the register WATCHDOG stays until the watchdog has bitten. */
     if (panel->owner == client)
         panel->owner = NULL;
@@ -105,6 +107,7 @@ static uint16_t word_of_row(const struct panel *panel, const struct panel_snapsh
     const struct panel_register *row = &takt_panel_registers[id];
     const uint32_t bits = snapshot->value[id];
 
+    TAKT_ASSERT(index < row->words);
     if (row->form == PANEL_TEXT || row->form == PANEL_BYTES)
         return word_of_bytes(panel, snapshot, id, index);
     return (uint16_t)(index + 1 < row->words ? bits >> 16 : bits);

@@ -1,10 +1,12 @@
 /* Uploads of settings by a panel, and why they were refused. */
+#include "base/assert.h"
 #include "panel/panel_private.h"
 
 #include <string.h>
 
 void takt_panel_turn_upload(struct panel *panel, enum panel_upload_kind kind)
 {
+    TAKT_ASSERT(kind <= PANEL_UPLOAD_PLAN);
     if (panel->kind == kind)
         return;
     takt_panel_upload_abandon(&panel->upload, takt_panel_get_store(panel));

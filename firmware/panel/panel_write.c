@@ -1,7 +1,7 @@
 /* Registers and coils written: values decoded, checked, and handed to the row they belong to. */
+#include "base/assert.h"
 #include "panel/panel_private.h"
 
-#include <assert.h>
 #include <string.h>
 
 static uint16_t word_at(enum modbus_table table, const uint8_t *data, unsigned at)
@@ -16,6 +16,7 @@ static int64_t decode(const struct panel_register *row, const uint8_t *data, uns
 {
     uint32_t bits = word_at(row->table, data, at);
 
+    TAKT_ASSERT(row->words == 1 || row->words == 2);
     if (row->words == 2)
         bits = bits << 16 | word_at(row->table, data, at + 1);
     return row->form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
@@ -23,13 +24,15 @@ static int64_t decode(const struct panel_register *row, const uint8_t *data, uns
 
 static void add_order(struct panel_request *r, enum panel_id id, int64_t value)
 {
-    assert(r->order.count < PANEL_ORDER_MAX);
+    TAKT_ASSERT(r->order.count < PANEL_ORDER_MAX);
+    TAKT_ASSERT(id < REGISTER_COUNT);
     r->order.item[r->order.count++] = (struct panel_order_item){id, value};
 }
 
 /* A checked number goes into the mailbox, or becomes part of the order. */
 static void take_number(struct panel_request *r, enum panel_id id, int64_t value)
 {
+    TAKT_ASSERT(id < REGISTER_COUNT);
     /* The mailbox's registers are a few; all others are for the controller. */
     if (id == REGISTER_PASSWORD) {
         r->has_password = true;
@@ -61,6 +64,7 @@ static void take_bytes(struct panel_request *r, enum panel_id id, unsigned from,
 {
     uint8_t *to = id == REGISTER_UPLOAD_DATA ? r->mailbox.chunk : r->mailbox.mdi;
 
+    TAKT_ASSERT(words > 0);
     memcpy(to + (size_t)2 * from, data, (size_t)2 * words);
 }
 

@@ -1,7 +1,5 @@
 #include "panel/registers.h"
 
-#include <assert.h>
-
 #define FROM_500 500
 
 /* clang-format off */
@@ -13,12 +11,12 @@
 #define PANEL_TEXTS(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
     [REGISTER_##id] = {#id, unit, meaning},
 #define PANEL_CHECK(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
-    static_assert((int64_t)(least) == -(int64_t)(most) || (least) == FROM_500 || (least) == 0 || (least) == 1, #id); \
-    static_assert((most) >= INT32_MAX ? (most) == ((form) == PANEL_S32 ? INT32_MAX : UINT32_MAX) \
+    _Static_assert((int64_t)(least) == -(int64_t)(most) || (least) == FROM_500 || (least) == 0 || (least) == 1, #id); \
+    _Static_assert((most) >= INT32_MAX ? (most) == ((form) == PANEL_S32 ? INT32_MAX : UINT32_MAX) \
                                       : RANGE(most) << RANGE_BITS(most) == (most) && RANGE(most) <= UINT16_MAX, #id);
 /* clang-format on */
 
-static_assert(sizeof(struct panel_register) == 8, "a row of the table is small");
+_Static_assert(sizeof(struct panel_register) == 8, "a row of the table is small");
 
 PANEL_REGISTERS(PANEL_CHECK)
 

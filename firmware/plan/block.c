@@ -13,6 +13,7 @@
  */
 #include "plan/block.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "geometry/involute.h"
 #include "plan/path_unit.h"
@@ -70,6 +71,7 @@ static void limit_arc_ramp(struct block *b, double jerk_budget, double v)
     const double turning = RAMP_NORMAL * j_max / (3.0 * shape->second * v);
     const double j = (RAMP_ALONG * j_max - shape->third * v * v * v) / shape->first;
 
+    TAKT_ASSERT(shape->second > 0.0 && v > 0.0);
     b->a_mm_s2 = maths_min(b->a_mm_s2, maths_min(along, turning));
     b->j_mm_s3 = maths_min(b->j_mm_s3, j);
 }
@@ -77,6 +79,7 @@ static void limit_arc_ramp(struct block *b, double jerk_budget, double v)
 /* Limits are found for the highest override, so that they hold while the feed is on its way to a lower one. */
 void takt_block_set_jerk_budget(struct block *b, double jerk_budget)
 {
+    TAKT_ASSERT(jerk_budget >= 0.0 && jerk_budget <= BLOCK_JERK_BUDGET_MAX);
     b->jerk_budget = jerk_budget;
     b->feed_max_mm_s =
         block_ceiling(b, jerk_budget, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
@@ -85,10 +88,12 @@ void takt_block_set_jerk_budget(struct block *b, double jerk_budget)
     if (b->shape.first > 0.0) {
         limit_arc_ramp(b, jerk_budget, b->feed_max_mm_s);
     }
+    TAKT_ASSERT(b->feed_max_mm_s >= 0.0 && b->a_mm_s2 >= 0.0 && b->j_mm_s3 >= 0.0);
 }
 
 void takt_block_cap_feed(struct block *b, double feed_mm_s, enum governor governor)
 {
+    TAKT_ASSERT(feed_mm_s > 0.0);
     if (feed_mm_s < b->feed_cap_mm_s) {
         b->feed_cap_mm_s = feed_mm_s;
         b->cap = governor;
@@ -128,6 +133,7 @@ static void limit_line_axis(struct block_shape *shape, struct bound *c,
     double a = limits->acceleration_mm_s2[i];
     double j = limits->jerk_mm_s3[i];
 
+    TAKT_ASSERT(bounds->first[i] > 0.0 || !(second > 0.0));
     if (second > 0.0) {
         const double part_j = 0.5 * SPIRAL_PART * j;
 
@@ -149,6 +155,7 @@ static void limit_line_axis(struct block_shape *shape, struct bound *c,
 /* Chord error: v = (2/cycle) sqrt(2 R d - d^2) (cycle-frequency page, (3) turned round); R <= d needs none. */
 static double chord_feed(double radius_mm, double chord_mm, double cycle_s)
 {
+    TAKT_ASSERT(radius_mm >= 0.0 && cycle_s > 0.0);
     if (radius_mm <= chord_mm) {
         return MATHS_INFINITY;
     }
@@ -180,6 +187,7 @@ static void limit_curved_plane(struct block_shape *shape, enum axis first, enum 
     const double along = bounds->second_along / bounds->second[first];
     const double across = bounds->third_across / bounds->third[first];
 
+    TAKT_ASSERT(bounds->second[first] > 0.0 && bounds->third[first] > 0.0);
     shape->first = bounds->first[first];
     shape->second = bounds->second[first];
     shape->third = bounds->third[first];
@@ -213,6 +221,7 @@ static void scale_bounds(struct curve_bounds *b, double scale)
 {
     const double square = scale * scale;
 
+    TAKT_ASSERT(scale > 0.0);
     for (int i = 0; i < AXIS_COUNT; i++) {
         b->first[i] *= scale;
         b->second[i] *= square;
@@ -233,6 +242,7 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
 
     takt_curve_bound(curve, &bounds);
     scale_bounds(&bounds, scale);
+    TAKT_ASSERT(!curved || (first != second && first < AXIS_COUNT && second < AXIS_COUNT));
     for (int i = 0; i < AXIS_COUNT; i++) {
         if (bounds.first[i] > 0.0) {
             bound_lower(c, limits->velocity_mm_s[i] / bounds.first[i], GOVERNOR_VELOCITY);
@@ -259,6 +269,7 @@ void takt_block_set_motion(struct block *b, const struct move *move, const struc
     const struct scale machine = takt_scale_of_machine(limits);
     struct bound c = {MATHS_INFINITY, GOVERNOR_VELOCITY};
 
+    TAKT_ASSERT(curve->length_mm > 0.0);
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->curve = *curve;
@@ -274,6 +285,7 @@ void takt_block_set_motion(struct block *b, const struct move *move, const struc
     bound_lower(&c, CYCLE_BLOCKS_MAX * b->length_mm / limits->cycle_s, GOVERNOR_SHORT);
     b->feed_cap_mm_s = c.feed_mm_s;
     b->cap = c.governor;
+    TAKT_ASSERT(b->feed_cap_mm_s > 0.0);
     takt_block_set_jerk_budget(b, BLOCK_JERK_BUDGET_MAX);
 }
 
@@ -282,6 +294,7 @@ void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, do
 {
     const struct smooth_rate *rate = &piece->rate;
 
+    TAKT_ASSERT(piece->interval_s > 0.0 && unit_mm > 0.0);
     memset(b, 0, sizeof(*b));
     b->move = *piece->move;
     b->number = piece->number;
@@ -295,6 +308,7 @@ void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, do
     b->cap = GOVERNOR_SMOOTH;
     b->shape.line_a_mm_s2 = piece->change.by * unit_mm;
     b->shape.line_j_mm_s3 = piece->change.rounded * unit_mm;
+    TAKT_ASSERT(b->feed_cap_mm_s > 0.0 && b->length > 0);
     b->end = JUNCTION_STOP;
     takt_block_set_jerk_budget(b, 0.0);
 }
@@ -308,6 +322,7 @@ void takt_block_join_smooth(struct block *b, const struct block *next)
 
 void takt_block_set_wait(struct block *b, const struct move *move)
 {
+    TAKT_ASSERT(!move_is_motion(move));
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->end = JUNCTION_STOP;

@@ -9,17 +9,16 @@
  */
 #include "plan/ceiling.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "plan/ceiling_backward.h"
 #include "plan/path.h"
 #include "plan/path_unit.h"
 #include "plan/span.h"
 
-#include <assert.h>
-
-static_assert(CEILING_PIECES_MAX < CEILING_NONE, "pieces fit into ceiling_piece.landing");
-static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
-static_assert(sizeof(struct ceiling_piece) == 20, "no padding");
+_Static_assert(CEILING_PIECES_MAX < CEILING_NONE, "pieces fit into ceiling_piece.landing");
+_Static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
+_Static_assert(sizeof(struct ceiling_piece) == 20, "no padding");
 
 /*
  * Between being asked for and being taken a ceiling grows this many cycles old at most (MOTION_EXCHANGE_CYCLES and the
@@ -124,6 +123,7 @@ static struct span_window find_window(const struct builder *s, uint32_t index)
 static uint32_t promise_window(struct builder *s, uint32_t index)
 {
     const struct span_window window = find_window(s, index);
+    TAKT_ASSERT(window.cycles <= takt_ramp_profile_cycles_max(s->path->limits.profile));
 
     takt_path_promise(s->path, index, window.cycles, window.known);
     return window.cycles;
@@ -146,6 +146,7 @@ static void begin_span(struct builder *s, uint32_t index)
 /* Blocks from the first on, as pieces count them. */
 static unsigned since(const struct builder *s, uint32_t index)
 {
+    TAKT_ASSERT(index - s->c->first < CEILING_NONE);
     return index - s->c->first;
 }
 
@@ -155,6 +156,7 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, float feed
 {
     struct ceiling_piece *p = &s->c->piece[s->c->count];
 
+    TAKT_ASSERT(s->c->count < CEILING_PIECES_MAX && a >= 0.0 && feed_mm_s >= 0.0F);
     *p = (struct ceiling_piece){
         .feed_mm_s = feed_mm_s,
         .acceleration = (float)a,
@@ -204,6 +206,7 @@ static void begin_ceiling(struct builder *s, double at_mm, double reference_mm)
 /* Divides piece k at a place in it. */
 static void divide(struct ceiling *c, uint32_t k, double at_mm)
 {
+    TAKT_ASSERT(k < c->count && c->count < CEILING_PIECES_MAX);
     for (uint32_t i = c->count++; i > k; i--) {
         c->end_mm[i] = c->end_mm[i - 1];
         c->piece[i] = c->piece[i - 1];
@@ -241,6 +244,7 @@ static void add_trailing(struct builder *s, double a, double end_mm)
 {
     unsigned kept = 0;
 
+    TAKT_ASSERT(a >= 0.0 && s->trailing_count <= TRAILING_MAX);
     for (unsigned i = 0; i < s->trailing_count; i++) {
         if (s->trailing[i].a < a && s->trailing[i].end_mm > s->begin_mm) {
             s->trailing[kept++] = s->trailing[i];
@@ -312,6 +316,7 @@ static void lay_block(struct builder *s, uint32_t index)
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
     const double behind_mm = path_whole_mm(top * s->behind);
+    TAKT_ASSERT(a >= 0.0 && end_mm > start_mm);
 
     s->fastest = maths_max(s->fastest, top);
     s->gentlest = maths_min(s->gentlest, a);
@@ -358,6 +363,7 @@ static void lay_landed_junction(struct builder *s, uint32_t index)
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
     double feed = (double)b->feed_junction_mm_s * s->cycle_s;
 
+    TAKT_ASSERT(path_at(s->path, index + 1)->motion);
     feed = maths_min(feed, shorter_mm / (wider + 4.0 + landing_ramp(feed, a, wider)));
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
@@ -407,6 +413,10 @@ void takt_ceiling_build(struct ceiling *c, struct path *path, const struct ceili
     struct builder s = {
         .c = c, .path = path, .request = request, .cycle_s = t, .gentlest = MATHS_INFINITY};
 
+    TAKT_ASSERT(request->feed_ratio > 0.0 && request->feed_ratio <= BLOCK_OVERRIDE_MAX);
+    TAKT_ASSERT(request->rapid_ratio > 0.0 && request->rapid_ratio <= 1.0 &&
+                request->spindle_rev_s >= 0.0);
+    TAKT_ASSERT((int32_t)(path->closed - request->first) >= 0);
     c->path = path;
     c->cycle_s = t;
     c->first = request->first;
@@ -427,11 +437,13 @@ static uint32_t kept_block(const struct ceiling *c, unsigned block)
 
 uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k)
 {
+    TAKT_ASSERT(k < c->count);
     return path_start(c->path, kept_block(c, c->piece[k].start));
 }
 
 uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k)
 {
+    TAKT_ASSERT(k < c->count);
     return path_start(c->path, kept_block(c, c->piece[k].leave));
 }
 

@@ -4,6 +4,7 @@
  */
 #include "plan/ceiling_backward.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "plan/ceiling.h"
 #include "smooth/single.h"
@@ -48,6 +49,7 @@ static float begin_feed(const struct ceiling *c, uint32_t k, float feed_mm_s, fl
     const double feed_squared =
         square(ceiling_feed(c, end_mm_s)) + 2.0 * (double)c->piece[k].acceleration * length_mm;
 
+    TAKT_ASSERT(length_mm >= 0.0);
     return feed_squared < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, feed_squared)
                                                              : feed_mm_s;
 }
@@ -108,6 +110,7 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile,
     }
     *feed_mm_s = begin_feed(c, k, p->feed_mm_s, end_mm_s);
     *max_mm_s = begin_feed(c, k, top_mm_s, end_max_mm_s);
+    TAKT_ASSERT(*feed_mm_s >= 0.0F && *feed_mm_s <= p->feed_mm_s);
 }
 
 /* Between a piece and the junction that the span ends with: the pieces that ask for no more than any behind them. */

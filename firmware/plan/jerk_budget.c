@@ -14,12 +14,12 @@
  */
 #include "plan/jerk_budget.h"
 
+#include "base/assert.h"
 #include "base/handoff.h"
 #include "base/maths.h"
 #include "plan/junction.h"
 #include "plan/path.h"
 
-#include <assert.h>
 #include <string.h>
 
 static struct jerk_budget_block *open_block(struct path *p, uint32_t index)
@@ -31,12 +31,15 @@ void takt_jerk_budget_note(struct path *p, uint32_t index, const struct block *b
 {
     struct jerk_budget_block *o = open_block(p, index);
 
+    TAKT_ASSERT(index - p->closed < JERK_BUDGET_BLOCKS_MAX);
     o->shape = b->shape;
     o->feed_program_mm_s = b->feed_program_mm_s;
     o->feed_cap_mm_s = b->feed_cap_mm_s;
     o->cap = b->cap;
     o->jerk_budget_junction = b->jerk_budget_junction;
     o->least_s = b->length_mm > 0.0 ? b->length_mm / takt_block_top_feed(b) : 0.0;
+    TAKT_ASSERT(o->least_s >= 0.0 && o->jerk_budget_junction >= 0.0 &&
+                o->jerk_budget_junction <= BLOCK_JERK_BUDGET_MAX);
     takt_ring_limit(&p->ring, index, b);
     takt_ring_join(&p->ring, index, b);
 }
@@ -53,6 +56,7 @@ static void settle(struct path *p, uint32_t index)
     const struct jerk_budget_block *o = open_block(p, index);
     struct block b;
 
+    TAKT_ASSERT(o->jerk_budget_near >= 0.0 && o->jerk_budget_near <= BLOCK_JERK_BUDGET_MAX);
     memset(&b, 0, sizeof(b));
     b.shape = o->shape;
     b.feed_program_mm_s = o->feed_program_mm_s;
@@ -65,6 +69,7 @@ static void settle(struct path *p, uint32_t index)
 /* Closes the blocks before this one. */
 static void close_until(struct path *p, uint32_t end)
 {
+    TAKT_ASSERT((int32_t)(end - p->closed) >= 0 && (int32_t)(p->pushed - end) >= 0);
     while (p->closed != end) {
         settle(p, p->closed);
         handoff_set_count(&p->closed, p->closed + 1U);
@@ -77,6 +82,7 @@ static uint32_t settled_end(struct path *p, double near_s)
     uint32_t i = p->pushed - 1;
     double time_s = open_block(p, i)->least_s;
 
+    TAKT_ASSERT(p->closed != p->pushed);
     while (i != p->closed && time_s < near_s) {
         i--;
         time_s += open_block(p, i)->least_s;
@@ -91,6 +97,7 @@ void takt_jerk_budget_spread(struct path *p)
     struct jerk_budget_block *newest = open_block(p, p->pushed - 1);
     double time_s = 0.0;
 
+    TAKT_ASSERT(p->pushed - p->closed >= 2);
     if (path_at(p, p->pushed - 2)->end == JUNCTION_STOP) {
         close_until(p, p->pushed - 1);
         return;
@@ -103,7 +110,7 @@ void takt_jerk_budget_spread(struct path *p)
         time_s += o->least_s;
     }
     close_until(p, settled_end(p, near_s));
-    assert(p->pushed - p->closed < JERK_BUDGET_BLOCKS_MAX);
+    TAKT_ASSERT(p->pushed - p->closed < JERK_BUDGET_BLOCKS_MAX);
 }
 
 void takt_jerk_budget_close(struct path *p)

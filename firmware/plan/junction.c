@@ -29,6 +29,7 @@
  */
 #include "plan/junction.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 struct junction_steps {
@@ -73,6 +74,7 @@ static double feed_within(double d, double k, double within_mm, double cycle_s)
     const double c = d * cycle_s / (4.0 * within_mm);
     const double root = c + maths_sqrt(c * c + k * cycle_s * cycle_s / (2.0 * within_mm));
 
+    TAKT_ASSERT(d >= 0.0 && k >= 0.0 && within_mm > 0.0);
     return root > 0.0 ? 2.0 / root : MATHS_INFINITY;
 }
 
@@ -82,6 +84,7 @@ static void junction_measure(const struct block *before, const struct block *aft
     const double cycle = limits->cycle_s;
     struct point t0, t1, k0, k1;
 
+    TAKT_ASSERT(before->curve.length_mm > 0.0 && after->curve.length_mm > 0.0);
     measure_at(before, before->curve.length_mm, &t0, &k0);
     measure_at(after, 0.0, &t1, &k1);
     static const struct point straight;
@@ -131,6 +134,7 @@ static double crowded_feed(const struct junction_steps *steps, double reach_mm_s
     const double q = steps->q_s2_mm2;
     double v = MATHS_INFINITY;
 
+    TAKT_ASSERT(reach_mm_s > 0.0);
     if (p > 0.0) {
         v = maths_min(v, maths_sqrt(right / p));
     }
@@ -153,6 +157,7 @@ static double junction_crowding(const struct block *before, const struct block *
     const double rate_per_s = maths_max(takt_block_top_feed(before) / before->length_mm,
                                         takt_block_top_feed(after) / after->length_mm);
 
+    TAKT_ASSERT(before->length_mm > 0.0 && after->length_mm > 0.0);
     return maths_max(1.0, apart_s * rate_per_s);
 }
 
@@ -162,6 +167,7 @@ static double junction_jerk_budget(const struct junction_steps *steps, double v,
     const double jerk = steps->p_s_mm * v + steps->q_s2_mm2 * v * v;
     const double acceleration = steps->r_s_mm * v * (BLOCK_JERK_BUDGET_MAX / JUNCTION_ACCELERATION);
 
+    TAKT_ASSERT(v >= 0.0 && crowding >= 1.0);
     return maths_min(BLOCK_JERK_BUDGET_MAX, maths_max(jerk, acceleration) * crowding);
 }
 
@@ -176,12 +182,14 @@ static double short_ceiling(const struct block *b, double v, double shorter_mm, 
 /* Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not reached. */
 static double ramp_s(double change_mm_s, double a, double j)
 {
+    TAKT_ASSERT(change_mm_s >= 0.0 && a > 0.0 && j > 0.0);
     return change_mm_s * j >= a * a ? change_mm_s / a + a / j : 2.0 * maths_sqrt(change_mm_s / j);
 }
 
 /* The feed that a ramp from rest over a length reaches, by full acceleration or by full jerk: V T(V) / 2 = L. */
 static double feed_over(double length_mm, double a, double j)
 {
+    TAKT_ASSERT(length_mm > 0.0 && a > 0.0 && j > 0.0);
     return maths_min(maths_sqrt(2.0 * length_mm * a), takt_maths_cbrt(length_mm * length_mm * j));
 }
 
@@ -193,6 +201,8 @@ static double feed_over(double length_mm, double a, double j)
 static bool is_worth_passing(const struct block *before, const struct block *after, double v,
                              double jerk_budget, double cycle_s)
 {
+    TAKT_ASSERT(before->jerk_budget < 1.0 && after->jerk_budget < 1.0 && jerk_budget >= 0.0 &&
+                jerk_budget < 1.0);
     if (v < JUNCTION_LEAST_CYCLES * before->j_mm_s3 * cycle_s * cycle_s) {
         return false;
     }
@@ -232,6 +242,7 @@ static void junction_pass(struct block *before, const struct block *after, doubl
 {
     const double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
 
+    TAKT_ASSERT(v > 0.0 && jerk_budget >= 0.0 && jerk_budget <= BLOCK_JERK_BUDGET_MAX);
     before->end = v >= top ? JUNCTION_PASSED : JUNCTION_REDUCED;
     before->feed_junction_mm_s = v;
     before->jerk_budget_junction = jerk_budget;
@@ -244,6 +255,7 @@ void takt_junction_form(struct block *before, struct block *after, const struct 
     const double reach_mm_s = shorter_mm / apart_s;
     struct junction_steps steps;
 
+    TAKT_ASSERT(block_is_motion(before) && block_is_motion(after));
     if (before->move.path == PATH_EXACT_STOP) {
         takt_junction_stop(before);
         return;

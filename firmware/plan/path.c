@@ -1,5 +1,6 @@
 #include "plan/path.h"
 
+#include "base/assert.h"
 #include "base/handoff.h"
 #include "base/maths.h"
 #include "plan/jerk_budget.h"
@@ -7,12 +8,11 @@
 #include "plan/path_unit.h"
 #include "plan/scale.h"
 
-#include <assert.h>
 #include <stddef.h>
 #include <string.h>
 
-static_assert(JERK_BUDGET_BLOCKS_MAX <= PATH_MODES_MAX,
-              "blocks that are not closed leave room for more, without which they never are");
+_Static_assert(JERK_BUDGET_BLOCKS_MAX <= PATH_MODES_MAX,
+               "blocks that are not closed leave room for more, without which they never are");
 
 /* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
 static void init_smooth(struct path *p)
@@ -31,22 +31,30 @@ static void init_smooth(struct path *p)
     takt_smooth_init(&p->smooth, &limits);
 }
 
+/* Is it one of those that may still be read? The last ones that have been passed are (ring.h). */
+static bool is_kept(const struct path *p, uint32_t index)
+{
+    return (int32_t)(index + RECORD_BEFORE - p->kept) >= 0 && (int32_t)(p->pushed - index) > 0;
+}
+
 void takt_path_init(struct path *p, const struct plan_limits *limits, const struct point *start)
 {
+    TAKT_ASSERT(limits->cycle_s > 0.0);
     memset(p, 0, sizeof(*p));
     p->limits = *limits;
     p->end = *start;
     p->ring.scale = takt_scale_of_machine(limits);
+    TAKT_ASSERT(p->ring.scale.linear > 0.0 && p->ring.scale.rotary > 0.0);
     init_smooth(p);
 }
 
 /* Where smoothing keeps its chain. */
 void *takt_path_lend(struct path *p, size_t size)
 {
-    static_assert(offsetof(struct path, smooth.route) % sizeof(uint64_t) == 0,
-                  "at a multiple of 8");
+    _Static_assert(offsetof(struct path, smooth.route) % sizeof(uint64_t) == 0,
+                   "at a multiple of 8");
     (void)size;
-    assert(size <= PATH_LENT_MAX && !p->smooth.open);
+    TAKT_ASSERT(size <= PATH_LENT_MAX && !p->smooth.open);
     p->lent = true;
     return (unsigned char *)&p->smooth + offsetof(struct smooth, route);
 }
@@ -84,26 +92,31 @@ static struct block *edge(struct path *p, uint32_t index)
 
 double takt_path_length(const struct path *p, uint32_t index)
 {
+    TAKT_ASSERT(is_kept(p, index));
     return path_mm(path_at(p, index)->start, path_end(p, index));
 }
 
 enum move_kind takt_path_kind(const struct path *p, uint32_t index)
 {
+    TAKT_ASSERT(is_kept(p, index));
     return takt_record_kind(ring_record(&p->ring, index));
 }
 
 double takt_path_feed_rev(const struct path *p, uint32_t index)
 {
+    TAKT_ASSERT(is_kept(p, index));
     return takt_record_feed_rev(ring_record(&p->ring, index));
 }
 
 void takt_path_read_move(const struct path *p, uint32_t index, struct move *move)
 {
+    TAKT_ASSERT(is_kept(p, index));
     takt_ring_read_move(&p->ring, index, move);
 }
 
 void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known)
 {
+    TAKT_ASSERT(is_kept(p, index) && cycles <= takt_ramp_profile_cycles_max(p->limits.profile));
     takt_ring_promise(&p->ring, index, cycles, known);
 }
 
@@ -120,6 +133,7 @@ static void close_newest(struct path *p)
 /* control: of a piece of a smoothed curve, else NULL. */
 static void append(struct path *p, const struct block *b, const struct point control[4])
 {
+    TAKT_ASSERT(p->pushed - p->closed < JERK_BUDGET_BLOCKS_MAX);
     takt_ring_push(&p->ring, handoff_get_count(&p->kept), p->pushed, b, control);
     takt_jerk_budget_begin(p, p->pushed, b);
     handoff_set_count(&p->pushed, p->pushed + 1U);
@@ -158,6 +172,7 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
 {
     struct block *b = edge(p, p->pushed);
 
+    TAKT_ASSERT(to_mm > p->split_mm && to_mm <= p->length_mm);
     takt_block_set_motion(b, &p->split, curve, &p->limits);
     b->number = p->motions;
     b->continues = to_mm < p->length_mm;
@@ -189,6 +204,7 @@ static void push_pieces(struct path *p, const struct curve *whole)
 
 static void push_motion(struct path *p, const struct move *move, const struct curve *curve)
 {
+    TAKT_ASSERT(!is_splitting(p));
     p->split = *move;
     p->from = p->end;
     p->length_mm = curve->length_mm;
@@ -211,6 +227,7 @@ static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
 {
     struct block *b = edge(p, p->pushed);
 
+    TAKT_ASSERT(!p->smoothing || p->pushed != p->closed);
     takt_block_set_smooth(b, piece, p->unit_mm);
     b->start = p->position;
     if (p->smoothing) {
@@ -271,6 +288,7 @@ static void push_smooth_pieces(struct path *p)
         return;
     }
     union path_spare *spare = p->spare == 0 ? &p->area.high.spare : &p->area.low.spare;
+    TAKT_ASSERT(p->spare < PATH_NO_SPARE);
     const bool open = p->smooth.open;
 
     while (has_slot(p, RECORD_MAX) && push_smooth(p, &spare->scratch)) {
@@ -320,7 +338,7 @@ static void push_move(struct path *p, const struct move *move)
     if (takt_move_curve(move, &p->end, &curve)) {
         p->newest_turns = turns_rotary(p, move);
         if (takt_smooth_takes(move, &curve)) {
-            assert(!p->lent);
+            TAKT_ASSERT(!p->lent);
             p->end = move->end;
             takt_smooth_push(&p->smooth, move, p->motions, &curve);
             push_smooth_pieces(p);
@@ -348,6 +366,7 @@ void takt_path_go_on(struct path *p)
     }
     if (p->finished && is_all_in_ring(p)) {
         close_newest(p);
+        TAKT_ASSERT(p->closed == p->pushed);
     }
 }
 
@@ -362,6 +381,7 @@ void takt_path_restart(struct path *p, const struct point *at, uint64_t position
     p->has_next = false;
     p->smoothing = false;
     takt_smooth_reset(&p->smooth);
+    TAKT_ASSERT(!is_splitting(p) && !p->smooth.open);
 }
 
 /* May it be smoothed together with what is being smoothed? */
@@ -401,7 +421,7 @@ static void finish_chain(struct path *p)
 
 void takt_path_push(struct path *p, const struct move *move)
 {
-    assert(takt_path_has_room(p) && !p->finished);
+    TAKT_ASSERT(takt_path_has_room(p) && !p->finished);
     if (joins_chain(p, move)) {
         push_move(p, move);
         return;
@@ -421,6 +441,6 @@ void takt_path_finish(struct path *p)
 
 void takt_path_pass(struct path *p)
 {
-    assert(p->first != p->pushed);
+    TAKT_ASSERT(p->first != p->closed); /* only those that the cycle may see */
     handoff_set_count(&p->first, p->first + 1U);
 }

@@ -1,9 +1,9 @@
 #include "plan/record.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "plan/bytes.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* Where the parts of the head are. */
@@ -41,8 +41,8 @@
 #define EVENT_WITH_MOTION 0x20U
 #define EVENT_OPTIONAL    0x40U
 
-static_assert(sizeof(struct record_modes) == 48, "no padding that could differ");
-static_assert(MOVE_END <= KIND_MASK && GOVERNOR_RAMP < 8, "both fit into a byte");
+_Static_assert(sizeof(struct record_modes) == 48, "no padding that could differ");
+_Static_assert(MOVE_END <= KIND_MASK && GOVERNOR_RAMP < 8, "both fit into a byte");
 
 /* -- numbers -- */
 
@@ -355,6 +355,7 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     struct point end;
     const bool has_end = end_of(b, spline, chain, &end);
 
+    TAKT_ASSERT(modes < 256 && b->move.kind <= MOVE_END);
     bytes_put_half(&to, b->move.line);
     bytes_put_half(&to, b->number);
     to = bytes + HEAD_SIZE;
@@ -376,6 +377,7 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     chain->has_control = spline;
     chain->has_end = has_end;
     chain->end = end;
+    TAKT_ASSERT(to - bytes <= RECORD_MAX);
     return (uint32_t)(to - bytes);
 }
 
@@ -504,6 +506,7 @@ void takt_record_control(const uint8_t *record, const uint8_t *const before[RECO
     for (unsigned i = 0; missing > 0 && before[i] != NULL; i++) {
         missing = read_control(before[i], control, missing);
     }
+    TAKT_ASSERT(missing == 0);
 }
 
 static void read_spline(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],

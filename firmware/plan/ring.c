@@ -1,14 +1,14 @@
 #include "plan/ring.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "plan/scale.h"
 
-#include <assert.h>
 #include <string.h>
 
-static_assert(PATH_BYTES_MAX / PATH_BYTES_STEP <= 1 << 12, "places fit into path_block.record");
-static_assert(RAMP_PROFILE_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
-static_assert(sizeof(struct path_block) == 32, "no padding");
+_Static_assert(PATH_BYTES_MAX / PATH_BYTES_STEP <= 1 << 12, "places fit into path_block.record");
+_Static_assert(RAMP_PROFILE_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
+_Static_assert(sizeof(struct path_block) == 32, "no padding");
 
 double takt_path_block_top(const struct path_block *b)
 {
@@ -26,6 +26,7 @@ static uint32_t oldest_record(uint32_t kept)
 /* Where a record of that size begins that is written now: it does not wrap around. False: no room. */
 static bool find_place(const struct path_ring *r, uint32_t tail, uint32_t size, uint32_t *place)
 {
+    TAKT_ASSERT(size <= RECORD_MAX && r->place <= PATH_BYTES_MAX);
     *place = r->place;
     if (r->place >= tail && r->place + size <= PATH_BYTES_MAX) {
         return true;
@@ -54,6 +55,7 @@ bool takt_ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushe
         oldest == pushed ? PATH_BYTES_MAX : ring_at(r, oldest)->record * PATH_BYTES_STEP;
     uint32_t place;
 
+    TAKT_ASSERT(pushed - kept <= PATH_BLOCKS_MAX - RECORD_BEFORE);
     return pushed - kept < PATH_BLOCKS_MAX - RECORD_BEFORE && find_place(r, tail, size, &place) &&
            free_modes(r, kept) < PATH_MODES_MAX;
 }
@@ -71,7 +73,7 @@ static unsigned find_modes(struct path_ring *r, uint32_t kept, const struct reco
         }
     }
     k = free_modes(r, kept);
-    assert(k < PATH_MODES_MAX);
+    TAKT_ASSERT(k < PATH_MODES_MAX);
     r->modes[k] = *modes;
     return k;
 }
@@ -94,6 +96,8 @@ static uint32_t push_record(struct path_ring *r, const struct block *b,
     const uint32_t size = takt_record_write(bytes, b, control, modes, &r->chain);
     const uint32_t place = r->place + size <= PATH_BYTES_MAX ? r->place : 0;
 
+    TAKT_ASSERT(size <= RECORD_MAX && place + size <= PATH_BYTES_MAX &&
+                place % PATH_BYTES_STEP == 0);
     memcpy(&r->byte[place], bytes, size);
     r->place = (place + size + PATH_BYTES_STEP - 1) / PATH_BYTES_STEP * PATH_BYTES_STEP;
     return place;
@@ -102,7 +106,7 @@ static uint32_t push_record(struct path_ring *r, const struct block *b,
 void takt_ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
                     const struct point control[4])
 {
-    assert(takt_ring_has_room(r, kept, pushed, RECORD_SHORT_MAX));
+    TAKT_ASSERT(takt_ring_has_room(r, kept, pushed, RECORD_SHORT_MAX));
     const unsigned modes = push_modes(r, kept, pushed, b, control != NULL);
     const uint32_t place = push_record(r, b, control, modes);
     const unsigned may = b->move.overrides;
@@ -126,6 +130,7 @@ void takt_ring_limit(struct path_ring *r, uint32_t index, const struct block *b)
     struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
     enum governor governor = GOVERNOR_PROGRAM;
     const double limit_mm_s = takt_block_limit(b, &governor);
+    TAKT_ASSERT(limit_mm_s >= 0.0 && b->a_mm_s2 >= 0.0 && b->j_mm_s3 >= 0.0);
 
     to->feed_limit_mm_s = takt_maths_float_below(limit_mm_s);
     to->a_mm_s2 = takt_maths_float_below(b->a_mm_s2);
@@ -137,6 +142,7 @@ void takt_ring_join(struct path_ring *r, uint32_t index, const struct block *b)
 {
     struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
 
+    TAKT_ASSERT(b->feed_junction_mm_s >= 0.0 && b->end <= JUNCTION_STOP);
     to->feed_junction_mm_s = takt_maths_float_below(b->feed_junction_mm_s);
     to->end = (unsigned)b->end & 3U;
     to->continues = b->continues;
@@ -146,6 +152,7 @@ void takt_ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, boo
 {
     struct path_block *b = &r->block[index % PATH_BLOCKS_MAX];
 
+    TAKT_ASSERT(cycles <= RAMP_PROFILE_CYCLES_MAX);
     b->cycles = cycles & 0x1ffU;
     b->cycles_known = known;
 }
@@ -154,7 +161,10 @@ void takt_ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, boo
 
 static const struct record_modes *modes_of(const struct path_ring *r, uint32_t index)
 {
-    return &r->modes[takt_record_modes_number(ring_record(r, index))];
+    const unsigned number = takt_record_modes_number(ring_record(r, index));
+
+    TAKT_ASSERT(number < PATH_MODES_MAX);
+    return &r->modes[number];
 }
 
 void takt_ring_read_move(const struct path_ring *r, uint32_t index, struct move *move)
@@ -164,6 +174,7 @@ void takt_ring_read_move(const struct path_ring *r, uint32_t index, struct move 
 
 static void read_limits(const struct path_block *from, uint64_t end, struct block *b)
 {
+    TAKT_ASSERT(!from->motion || (int64_t)(end - from->start) >= 0);
     b->start = from->start;
     b->length = from->motion ? end - from->start : 0;
     b->feed_program_mm_s = (double)from->feed_program_mm_s;

@@ -1,5 +1,6 @@
 #include "plan/scale.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "plan/path_unit.h"
 
@@ -74,6 +75,7 @@ static double scale_of_axes(const struct plan_limits *limits, unsigned axes)
     while (sum >= SUM_UNITS * scale) {
         scale *= 2.0;
     }
+    TAKT_ASSERT(scale > 0.0 && sum < SUM_UNITS * scale);
     return scale;
 }
 
@@ -101,6 +103,7 @@ static double turning_square(const struct curve *c)
 /* A smoothed curve counts its nominal time (block.c). */
 double takt_scale_of_curve(const struct curve *c, const struct scale *machine)
 {
+    TAKT_ASSERT(c->length_mm >= 0.0);
     if (c->kind == CURVE_SPLINE) {
         return 1.0;
     }

@@ -20,6 +20,7 @@
  */
 #include "plan/span.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* Parts looked at: what lies behind them counts as unknown. */
@@ -98,6 +99,7 @@ static bool add_block(struct span *s, const struct path *path, uint32_t index,
         .a = (double)b->a_mm_s2 * t * t,
         .j = (double)b->j_mm_s3 * t * t * t,
     };
+    TAKT_ASSERT(part.end_mm > 0.0 && part.feed > 0.0 && part.a > 0.0 && part.j > 0.0);
 
     if (s->count > 0) {
         struct part *last = &s->part[s->count - 1];
@@ -173,6 +175,7 @@ static void lay_parts(struct trial *t)
             }
             from_mm = last->from_mm;
         }
+        TAKT_ASSERT(t->count < PARTS_MAX);
         t->laid[t->count++] =
             (struct laid){part, from_mm, maths_min(part->a, part->j * t->box), 0.0};
     }
@@ -201,6 +204,7 @@ static double last_feed_squared(const struct trial *t)
     const double ceiling = square(last->part->feed);
     const double asked = t->span->known ? maths_min(ceiling, square(t->span->feed_end)) : ceiling;
 
+    TAKT_ASSERT(t->count > 0);
     return maths_min(asked, last->feed_squared + 2.0 * last->a * laid_length(t, t->count - 1));
 }
 
@@ -221,6 +225,7 @@ static void plan_energies(struct trial *t)
         struct laid *p = &t->laid[k];
 
         p->feed_squared = maths_min(p->feed_squared, feed_squared);
+        TAKT_ASSERT(p->feed_squared >= 0.0);
         feed_squared =
             maths_min(square(p->part->feed), p->feed_squared + 2.0 * p->a * laid_length(t, k));
     }
@@ -239,6 +244,7 @@ static void lower_peak(struct walk *w, double window, double peak, double a)
     const double lower = maths_sqrt(half * half + peak * peak + a * w->kept_mm) - half;
     const double had = 2.0 * (peak - lower) / a + w->kept_mm / peak;
 
+    TAKT_ASSERT(peak > 0.0 && a > 0.0);
     w->cycles += maths_max(0.0, window - had);
 }
 
@@ -286,11 +292,13 @@ static double predict(const struct span *s, uint32_t box)
         .end_mm = s->part[s->count - 1].end_mm + s->feed_end * behind,
     };
 
+    TAKT_ASSERT(box >= 1 && box <= takt_ramp_profile_cycles_max(s->profile));
     lay_parts(&t);
     plan_energies(&t);
     for (unsigned k = 0; k < t.count; k++) {
         pass_part(&walk, &t, k);
     }
+    TAKT_ASSERT(walk.cycles >= 0.0);
     return walk.cycles;
 }
 
@@ -352,6 +360,7 @@ struct span_window takt_span_window(const struct path *path, const struct ceilin
     struct span s = {.cycle_s = path->limits.cycle_s, .profile = path->limits.profile};
 
     survey(&s, path, request, index);
+    TAKT_ASSERT(s.count > 0);
     s.feed_start = maths_min(feed_at_start(path, request, index), s.part[0].feed);
     s.feed_end = maths_min(s.feed_end, s.part[s.count - 1].feed);
     return (struct span_window){best_box(&s), s.known};

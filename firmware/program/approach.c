@@ -1,5 +1,6 @@
 #include "program/approach.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/contour.h"
 #include "program/coordinates.h"
@@ -48,6 +49,7 @@ static bool has_z(const struct program *p)
 /* Nobody can start there. */
 static bool give_up(struct program *p, enum takt_error code, uint32_t line)
 {
+    TAKT_ASSERT(code != TAKT_OK);
     p->approach.pending = false;
     p->phase = PROGRAM_ENDED;
     p->queue_count = 0;

@@ -1,5 +1,6 @@
 #include "program/calculation.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <stddef.h>
@@ -45,6 +46,7 @@ static double remainder_of(double x, double y)
 {
     double step = y;
 
+    TAKT_ASSERT(x >= 0.0 && y > 0.0);
     while (step <= x * 0.5) {
         step += step;
     }

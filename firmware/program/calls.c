@@ -1,5 +1,6 @@
 #include "program/calls.h"
 
+#include "base/assert.h"
 #include "program/expression.h"
 #include "program/flow.h"
 #include "program/lexer.h"
@@ -18,6 +19,7 @@ static struct program_frame *current(struct program *p)
 /* PROGRAM_SUBS_MAX when there is none. */
 static unsigned find_sub(const struct program *p, const struct program_label *label)
 {
+    TAKT_ASSERT(p->flow.subs <= PROGRAM_SUBS_MAX);
     for (unsigned i = 0; i < p->flow.subs; i++) {
         if (oword_same_label(&p->flow.sub[i].label, label)) {
             return i;
@@ -115,6 +117,7 @@ static bool leave(struct program *p, const struct oword *o)
 {
     struct program_frame *frame = current(p);
 
+    TAKT_ASSERT(p->flow.calls > 0);
     if (!frame->numbered) {
         bring_back_locals(p, frame);
     }
@@ -132,6 +135,7 @@ static bool enter(struct program *p, const struct oword *o, unsigned sub)
     struct program_frame *frame = current(p);
     struct program_sub *s = &p->flow.sub[sub];
 
+    TAKT_ASSERT(sub < p->flow.subs);
     if (s->numbered != frame->numbered) {
         (void)leave(p, o);
         return takt_oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);

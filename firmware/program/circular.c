@@ -11,6 +11,7 @@
  */
 #include "program/circular.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/emit.h"
@@ -40,6 +41,7 @@ struct circle {
 
 static char centre_letter(enum axis axis)
 {
+    TAKT_ASSERT(axis < AXIS_LINEAR_COUNT);
     return (char)('i' + (int)axis);
 }
 
@@ -127,6 +129,7 @@ static bool centre_from_offsets(struct program *p, struct circle *c)
 /* sqrt(R^2 - h^2), 0 when R is as good as h. */
 static double centre_distance(double radius_mm, double half_mm)
 {
+    TAKT_ASSERT(radius_mm >= 0.0 && half_mm >= 0.0);
     if (half_mm >= radius_mm * HALF_TURN_RATIO) {
         return 0.0;
     }
@@ -160,6 +163,7 @@ bool takt_circular_check_axes(struct program *p, enum axis first, enum axis seco
 {
     const unsigned takt_plane_axes = (1U << first) | (1U << second);
 
+    TAKT_ASSERT(first != second && first < AXIS_LINEAR_COUNT && second < AXIS_LINEAR_COUNT);
     if ((p->config.axes & takt_plane_axes) != takt_plane_axes) {
         const bool first_missing = (p->config.axes & (1U << first)) == 0;
 
@@ -179,6 +183,7 @@ bool takt_circular_check_plane(struct program *p, enum axis first, enum axis sec
 {
     const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - first - second);
 
+    TAKT_ASSERT(first != second && first < AXIS_LINEAR_COUNT && second < AXIS_LINEAR_COUNT);
     if (!takt_circular_check_axes(p, first, second)) {
         return false;
     }

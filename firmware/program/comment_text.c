@@ -1,5 +1,6 @@
 #include "program/comment_text.h"
 
+#include "base/assert.h"
 #include "base/decimal.h"
 #include "program/comment.h"
 #include "program/expression.h"
@@ -50,6 +51,7 @@ static bool is_digit(char c)
 
 static void add(struct reading *r, const char *bytes, size_t length)
 {
+    TAKT_ASSERT(r->length < COMMENT_TEXT_MAX);
     for (size_t i = 0; i < length && r->length < COMMENT_TEXT_MAX - 1; i++) {
         r->text[r->length++] = bytes[i];
     }

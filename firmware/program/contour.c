@@ -1,5 +1,6 @@
 #include "program/contour.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/calls.h"
 #include "program/circular.h"
@@ -11,8 +12,6 @@
 #include "program/straight.h"
 #include "program/travel.h"
 #include "program/words.h"
-
-#include <assert.h>
 
 /* Moves of a cycle: what goes beyond is a mistake. */
 #define MOVES_MAX (100 * PROGRAM_REPEATS_MAX)
@@ -134,6 +133,7 @@ static bool report(struct program *p, enum takt_error error, double value)
     const char name[] = {'G', (char)('0' + number / 100), (char)('0' + number / 10 % 10), '.',
                          digit};
 
+    TAKT_ASSERT(error != TAKT_OK);
     takt_diagnostic_set(&p->error, error, c->line, c->column, name, number % 10 == 0 ? 3 : 5,
                         value);
     return false;
@@ -144,7 +144,7 @@ static struct profile_segment *add_segment(struct program *p)
 {
     struct profile *profile = &p->turning.profile;
 
-    assert(p->queue_count == 0);
+    TAKT_ASSERT(p->queue_count == 0);
     if (!p->cycle.contour.begun) {
         p->cycle.contour.begun = true;
         profile->count = 0;
@@ -193,6 +193,7 @@ static bool set_centre(struct program *p, const struct program_code *code, const
     enum axis second;
     double centre_mm[2];
 
+    TAKT_ASSERT(s != NULL);
     if (code->run != takt_circular_move) {
         s->kind = PROFILE_LINE;
         return true;
@@ -330,6 +331,7 @@ bool takt_contour_next(struct program *p, struct move *move)
 {
     struct turning_move t;
 
+    TAKT_ASSERT(p->cycle.contour.code != NULL);
     while (takt_turning_next(&p->turning, &t)) {
         if (make_move(p, &t, move)) {
             p->modes.at = move->end;

@@ -1,5 +1,6 @@
 #include "program/coordinates.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/report.h"
 #include "program/straight.h"
@@ -18,6 +19,7 @@ static bool is_rotary(enum axis axis)
 
 char takt_coordinates_letter(enum axis axis)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return (char)(AXIS_LETTERS[axis] - 'A' + 'a');
 }
 
@@ -25,6 +27,7 @@ static double offset_of(const struct program *p, enum axis axis)
 {
     const struct program_modes *m = &p->modes;
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return m->system_offset.at[axis] + m->axis_offset.at[axis] + m->tool_offset.at[axis];
 }
 
@@ -108,6 +111,7 @@ double takt_coordinates_work(const struct program *p, enum axis axis)
 {
     struct point work;
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     takt_coordinates_work_of(p, &p->modes.at, &work);
     return is_rotary(axis) ? work.at[axis] * DEGREES_PER_RAD : work.at[axis] / p->modes.unit_mm;
 }
@@ -116,6 +120,7 @@ bool takt_coordinates_word(const struct program *p, enum axis axis, double *valu
 {
     const char letter = takt_coordinates_letter(axis);
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     if (!words_has(p, letter)) {
         return false;
     }
@@ -178,18 +183,21 @@ double takt_coordinates_system_offset(const struct program *p, unsigned system, 
 {
     const unsigned first = PARAMETER_SYSTEM_OFFSET + (system - 1) * PARAMETER_SYSTEM_STRIDE;
 
+    TAKT_ASSERT(system >= 1 && system <= COORDINATES_SYSTEMS && axis < AXIS_COUNT);
     return takt_coordinates_from_parameter(takt_parameters_get(p->config.parameters, first + axis),
                                            axis);
 }
 
 double takt_coordinates_system_degrees(const struct program *p, unsigned system)
 {
+    TAKT_ASSERT(system >= 1 && system <= COORDINATES_SYSTEMS);
     return takt_parameters_get(p->config.parameters,
                                PARAMETER_SYSTEM_ROTATE + (system - 1) * PARAMETER_SYSTEM_STRIDE);
 }
 
 void takt_coordinates_load_system(struct program *p, unsigned system)
 {
+    TAKT_ASSERT(system >= 1 && system <= COORDINATES_SYSTEMS);
     p->modes.system = (uint8_t)system;
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
         p->modes.system_offset.at[i] = takt_coordinates_system_offset(p, system, i);

@@ -1,5 +1,6 @@
 #include "program/cycles.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/contour.h"
 #include "program/coordinates.h"
@@ -126,6 +127,7 @@ static bool check_spindle(struct program *p, const struct program_code *code)
 static void set_axes(struct program *p, struct program_cycle *c)
 {
     takt_plane_axes(p->modes.plane, &c->axis[0], &c->axis[1]);
+    TAKT_ASSERT(c->axis[0] != c->axis[1]);
     c->axis[2] = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - c->axis[0] - c->axis[1]);
 }
 
@@ -263,6 +265,7 @@ bool takt_cycles_start(struct program *p, const struct program_code *code)
     struct program_cycle *c = &p->cycle;
     struct point work;
 
+    TAKT_ASSERT(code != NULL && code->step == STEP_MOTION);
     memset(c, 0, sizeof(*c));
     c->repeats = 1;
     c->first = true;
@@ -322,6 +325,7 @@ bool takt_cycles_next(struct program *p, struct move *move)
 void takt_cycles_count_queued(struct program *p)
 {
     if (p->cycle.code != NULL && p->cycle.before > 0) {
+        TAKT_ASSERT(p->queue_count < PROGRAM_QUEUE_MAX);
         p->cycle.before--;
     }
 }

@@ -1,5 +1,6 @@
 #include "program/drilling.h"
 
+#include "base/assert.h"
 #include "program/coordinates.h"
 #include "program/cycles.h"
 #include "program/events.h"
@@ -202,6 +203,7 @@ static const struct row *current_row(const struct program_cycle *c)
 /* One hole is done. */
 static void next_hole(struct program_cycle *c)
 {
+    TAKT_ASSERT(c->repeats > 0);
     c->stage = 0;
     c->first = false;
     c->repeats--;
@@ -217,6 +219,7 @@ bool takt_drilling_next(struct program *p, struct move *move)
 {
     struct program_cycle *c = &p->cycle;
 
+    TAKT_ASSERT(p->cycle.code != NULL);
     while (c->code != NULL) {
         const struct row *row = current_row(c);
         bool done = true;

@@ -1,5 +1,6 @@
 #include "program/emit.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/cutter.h"
@@ -8,7 +9,6 @@
 #include "program/travel.h"
 #include "program/words.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define SECONDS_PER_MINUTE 60.0
@@ -35,7 +35,7 @@ static void describe(const struct program *p, struct move *m)
 
 struct move *takt_emit_event(struct program *p, enum move_kind kind)
 {
-    assert(p->queue_count < PROGRAM_QUEUE_MAX);
+    TAKT_ASSERT(p->queue_count < PROGRAM_QUEUE_MAX);
     struct move *m = &p->queue[(p->queue_first + p->queue_count++) % PROGRAM_QUEUE_MAX];
 
     memset(m, 0, sizeof(*m));
@@ -46,6 +46,7 @@ struct move *takt_emit_event(struct program *p, enum move_kind kind)
 
 bool takt_emit_take(struct program *p, struct move *move)
 {
+    TAKT_ASSERT(p->queue_count <= PROGRAM_QUEUE_MAX);
     if (takt_cycles_next(p, move)) {
         return true;
     }
@@ -151,6 +152,7 @@ static bool follow_spindle(struct program *p, struct move *m)
 
 bool takt_emit_set_feed(struct program *p, struct move *m)
 {
+    TAKT_ASSERT(m->kind != MOVE_RAPID);
     if (p->modes.per_revolution && m->feed_rev_mm == 0.0) {
         m->feed_rev_mm = moves_rotary_only(p, m) ? p->modes.feed_rev_rad : p->modes.feed_rev_mm;
         m->feed_mm_s = m->feed_rev_mm;
@@ -171,6 +173,7 @@ bool takt_emit_set_feed(struct program *p, struct move *m)
 
 bool takt_emit_motion(struct program *p, struct move *m)
 {
+    TAKT_ASSERT(move_is_motion(m));
     takt_cutter_apply(p, m);
     m->contour_side = (uint8_t)m->cutter_side;
     if (!takt_travel_check(p, m) || (m->kind != MOVE_RAPID && !takt_emit_set_feed(p, m))) {

@@ -1,5 +1,6 @@
 #include "program/events.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/emit.h"
@@ -29,6 +30,7 @@ void takt_events_spindle_move(const struct program *p, enum spindle_direction di
 {
     const struct program_modes *modes = &p->modes;
 
+    TAKT_ASSERT(m->kind == MOVE_SPINDLE);
     m->direction = direction;
     if (direction == SPINDLE_OFF) {
         return;

@@ -1,5 +1,6 @@
 #include "program/expression.h"
 
+#include "base/assert.h"
 #include "base/decimal.h"
 #include "base/maths.h"
 #include "program/calculation.h"

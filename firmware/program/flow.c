@@ -1,5 +1,6 @@
 #include "program/flow.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/calls.h"
 #include "program/emit.h"
@@ -37,6 +38,7 @@ bool takt_flow_jump(struct program *p, const struct program_place *place, const 
 /* Blocks below this one belong to callers. */
 static unsigned first_block(const struct program *p)
 {
+    TAKT_ASSERT(p->flow.frame[p->flow.calls].blocks <= p->flow.blocks);
     return p->flow.frame[p->flow.calls].blocks;
 }
 
@@ -53,11 +55,13 @@ static struct program_block *find_block(struct program *p, const struct oword *o
 
 static struct program_block *innermost(struct program *p)
 {
+    TAKT_ASSERT(p->flow.blocks > 0);
     return &p->flow.block[p->flow.blocks - 1];
 }
 
 static void close_block(struct program *p)
 {
+    TAKT_ASSERT(p->flow.blocks > first_block(p));
     p->flow.blocks--;
     p->flow.skip = SKIP_NOTHING;
 }
@@ -68,6 +72,7 @@ static struct program_block *open_block(struct program *p, const struct oword *o
     struct program_flow *f = &p->flow;
     const struct program_block *same = find_block(p, o);
 
+    TAKT_ASSERT(f->blocks <= PROGRAM_BLOCKS_MAX);
     if (same != NULL) {
         (void)takt_oword_error(p, TAKT_ERROR_OWORD_LABEL_USED, o, same->line);
         return NULL;

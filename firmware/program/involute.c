@@ -1,5 +1,6 @@
 #include "program/involute.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/circular.h"
 #include "program/coordinates.h"
@@ -36,6 +37,7 @@ static double unrolled_rad(double distance_mm, double radius_mm)
 {
     const double ratio = distance_mm / radius_mm;
 
+    TAKT_ASSERT(distance_mm >= 0.0 && radius_mm > 0.0);
     if (ratio <= 1.0) {
         return 0.0;
     }

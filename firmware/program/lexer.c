@@ -1,5 +1,7 @@
 #include "program/lexer.h"
 
+#include "base/assert.h"
+
 /* What has been seen of a line while it is read. */
 struct scan {
     uint32_t column;         /* of the last character, from 1 */
@@ -26,6 +28,7 @@ void takt_lexer_open(struct program_lexer *l, const struct source *source)
 /* More input when all has been read. Returns its length, or what the source says instead. */
 static long fill(struct program_lexer *l)
 {
+    TAKT_ASSERT(l->input_at <= l->input_length);
     long count;
 
     if (l->input_at < l->input_length) {
@@ -80,6 +83,7 @@ static void fail_unprintable(const struct program_lexer *l, struct scan *s,
 
 static void append(struct program_lexer *l, char c, uint32_t column)
 {
+    TAKT_ASSERT(l->length < PROGRAM_LINE_MAX);
     if (c >= 'A' && c <= 'Z') {
         c = (char)(c - 'A' + 'a');
     }
@@ -146,6 +150,7 @@ static void scan_byte(struct program_lexer *l, struct scan *s, struct diagnostic
 
 static void close_line(struct program_lexer *l, struct scan *s, struct diagnostic *error)
 {
+    TAKT_ASSERT(l->length <= PROGRAM_LINE_MAX);
     if (s->open > 0) {
         fail(l, s, error, TAKT_ERROR_COMMENT_UNCLOSED, s->comment_column, '(');
     }
@@ -187,6 +192,7 @@ enum lexer_result takt_lexer_next_line(struct program_lexer *l, struct diagnosti
 
 uint16_t takt_lexer_column(const struct program_lexer *l, unsigned at)
 {
+    TAKT_ASSERT(l->length <= PROGRAM_LINE_MAX);
     return at < l->length ? (uint16_t)(at + l->dropped[at] + 1U) : l->end_column;
 }
 

@@ -1,5 +1,7 @@
 #include "program/names.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 /* Names of globals. */
@@ -22,6 +24,7 @@ static unsigned size_at(const struct program_names *names, unsigned place)
 {
     unsigned end = place;
 
+    TAKT_ASSERT(place < sizeof names->text);
     while (names->text[end] != '\0') {
         end++;
     }
@@ -31,6 +34,8 @@ static unsigned size_at(const struct program_names *names, unsigned place)
 uint16_t takt_names_place(struct program_names *names, const char *text, size_t length)
 {
     unsigned place = 0;
+
+    TAKT_ASSERT(names->text_length <= sizeof names->text);
 
     while (place < names->text_length && !is_text_at(names, place, text, length)) {
         place += size_at(names, place);
@@ -115,6 +120,7 @@ int takt_names_find(const struct program_names *names, const char *name, size_t 
 {
     const uint8_t call = call_of(names, name);
 
+    TAKT_ASSERT(names->count <= PROGRAM_NAMES_MAX);
     for (unsigned i = 0; i < names->count; i++) {
         if (names->of_call[i] == call && is_text_at(names, names->place[i], name, length)) {
             return (int)i;
@@ -128,6 +134,7 @@ double *takt_names_add(struct program *p, const char *name, size_t length)
     struct program_names *names = &p->names;
     uint16_t place;
 
+    TAKT_ASSERT(p->names.count <= PROGRAM_NAMES_MAX);
     if (names->count == PROGRAM_NAMES_MAX) {
         return NULL;
     }
@@ -152,6 +159,7 @@ void takt_names_leave_call(struct program_names *names)
 {
     unsigned kept = 0;
 
+    TAKT_ASSERT(names->call > 0);
     for (unsigned i = 0; i < names->count; i++) {
         if (names->of_call[i] == names->call) {
             continue;

@@ -1,5 +1,6 @@
 #include "program/oword.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/expression.h"
 #include "program/lexer.h"
@@ -238,6 +239,7 @@ bool takt_oword_error(struct program *p, enum takt_error code, const struct owor
 {
     char word[DIAGNOSTIC_WORD_MAX];
 
+    TAKT_ASSERT(code != TAKT_OK);
     takt_diagnostic_set(&p->error, code, o->line, o->column, word, describe(p, word, o), value);
     return false;
 }

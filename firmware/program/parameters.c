@@ -1,5 +1,7 @@
 #include "program/parameters.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 void takt_parameters_clear(struct parameters *p)
@@ -13,6 +15,7 @@ static unsigned position_of(const struct parameters *p, unsigned number)
     unsigned low = 0;
     unsigned high = p->count;
 
+    TAKT_ASSERT(p->count <= PARAMETERS_MAX);
     while (low < high) {
         const unsigned middle = (low + high) / 2;
 
@@ -32,6 +35,7 @@ static bool holds(const struct parameters *p, unsigned position, unsigned number
 
 double takt_parameters_get(const struct parameters *p, unsigned number)
 {
+    TAKT_ASSERT(number >= 1);
     if (number <= PARAMETERS_LOCAL) {
         return p->local[number - 1];
     }
@@ -42,6 +46,7 @@ double takt_parameters_get(const struct parameters *p, unsigned number)
 
 static void insert(struct parameters *p, unsigned position, unsigned number)
 {
+    TAKT_ASSERT(p->count < PARAMETERS_MAX && position <= p->count);
     for (unsigned i = p->count; i > position; i--) {
         p->number[i] = p->number[i - 1];
         p->value[i] = p->value[i - 1];
@@ -74,6 +79,7 @@ static bool make_room(struct parameters *p)
 
 bool takt_parameters_set(struct parameters *p, unsigned number, double value)
 {
+    TAKT_ASSERT(number >= 1);
     if (number <= PARAMETERS_LOCAL) {
         p->local[number - 1] = value;
         return true;

@@ -1,5 +1,6 @@
 #include "program/predefined.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 
@@ -212,6 +213,7 @@ static double get_selected_tool(const struct program *p, int argument)
 
 static double get_position(const struct program *p, int argument)
 {
+    TAKT_ASSERT(argument >= 0 && argument < AXIS_COUNT);
     return takt_coordinates_work(p, (enum axis)argument);
 }
 
@@ -220,6 +222,7 @@ static double get_machine_position(const struct program *p, int argument)
     const enum axis axis = (enum axis)argument;
     const double value = takt_coordinates_to_parameter(p->modes.at.at[axis], axis);
 
+    TAKT_ASSERT(argument >= 0 && argument < AXIS_COUNT);
     return axis < AXIS_LINEAR_COUNT ? value / p->modes.unit_mm : value;
 }
 

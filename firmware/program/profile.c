@@ -1,8 +1,7 @@
 #include "program/profile.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
-
-#include <assert.h>
 
 /* Ends of offset segments that are this far from each other in u need an arc between them; nearer ones are lengthened. */
 #define GAP_MM 1e-2
@@ -38,6 +37,7 @@ double takt_profile_distance(const struct profile_point *a, const struct profile
 
 static double radius(const struct profile_segment *s)
 {
+    TAKT_ASSERT(s->kind == PROFILE_ARC);
     return takt_profile_distance(&s->start, &s->centre);
 }
 
@@ -248,6 +248,7 @@ struct over {
 /* Segments have odd numbers, corners, beginning and end among them, even ones. Made when they are asked for. */
 static unsigned overs(const struct profile *p)
 {
+    TAKT_ASSERT(p->count > 0 && p->count <= PROFILE_PATH_MAX);
     return 2 * p->count - 1;
 }
 
@@ -256,6 +257,7 @@ static bool get_over(const struct profile *p, unsigned number, double d, struct 
 {
     const unsigned i = number / 2;
 
+    TAKT_ASSERT(number < overs(p));
     o->number = number;
     o->corner = number % 2 == 0;
     if (o->corner) {
@@ -364,6 +366,7 @@ static double find_end(const struct profile *p, double d, double u, const struct
 
 static void add(struct profile_path *path, const struct profile_segment *s)
 {
+    TAKT_ASSERT(path->count <= PROFILE_PATH_MAX);
     if (takt_profile_distance(&s->start, &s->end) > PROFILE_SAME_MM &&
         path->count < PROFILE_PATH_MAX) {
         path->segment[path->count++] = *s;
@@ -473,6 +476,7 @@ static bool offset_up(const struct profile *p, double d, struct profile_path *pa
     struct profile_segment first = p->segment[1];
     struct profile_segment last = p->segment[p->count - 1];
 
+    TAKT_ASSERT(p->count >= 2);
     path->count = 1;
     if (!offset(&first, d) || !offset(&last, d) || last.end.u > first.start.u) {
         return false;
@@ -485,6 +489,7 @@ static bool offset_up(const struct profile *p, double d, struct profile_path *pa
 
 static void copy(const struct profile *p, struct profile_path *path)
 {
+    TAKT_ASSERT(p->count <= PROFILE_PATH_MAX);
     path->count = p->count;
     for (unsigned i = 0; i < p->count; i++) {
         path->segment[i] = p->segment[i];
@@ -510,6 +515,7 @@ bool takt_profile_offset(const struct profile *p, double distance_mm, struct pro
     const double d = signed_distance(p, distance_mm);
     bool good = true;
 
+    TAKT_ASSERT(p->count >= 2);
     if (maths_abs(d) < PROFILE_SAME_MM) {
         copy(p, path);
     } else if (d > 0.0) {

@@ -1,4 +1,5 @@
 /* The profile of a turning cycle in the frame of its cuts: facing is roughing turned by a quarter. */
+#include "base/assert.h"
 #include "program/profile.h"
 
 /* (u, v) to (v, -u) */
@@ -57,6 +58,7 @@ static bool falls(const struct profile_segment *s)
 
 bool takt_profile_falls(const struct profile *p, unsigned first)
 {
+    TAKT_ASSERT(first <= p->count);
     for (unsigned i = first; i < p->count; i++) {
         const uint8_t kind = p->segment[i].kind;
 

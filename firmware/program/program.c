@@ -1,5 +1,6 @@
 #include "program/program.h"
 
+#include "base/assert.h"
 #include "program/approach.h"
 #include "program/comment.h"
 #include "program/contour.h"
@@ -15,11 +16,9 @@
 #include "program/tool_values.h"
 #include "program/words.h"
 
-#include <assert.h>
-
-static_assert(sizeof(struct program) + sizeof(struct parameters) <= PROGRAM_MEMORY_MAX,
-              "the interpreter outgrew the memory set aside for it");
-static_assert(STEP_COUNT <= 32, "steps are bits of a word");
+_Static_assert(sizeof(struct program) + sizeof(struct parameters) <= PROGRAM_MEMORY_MAX,
+               "the interpreter outgrew the memory set aside for it");
+_Static_assert(STEP_COUNT <= 32, "steps are bits of a word");
 
 void takt_program_open(struct program *p, const struct program_config *config,
                        const struct source *source)
@@ -308,6 +307,7 @@ void takt_program_settle(struct program *p, const struct point *at)
 
 bool takt_program_warning(struct program *p, struct diagnostic *diagnostic)
 {
+    TAKT_ASSERT(p->warnings <= PROGRAM_WARNINGS_MAX);
     if (p->warnings == 0) {
         return false;
     }

@@ -1,5 +1,6 @@
 #include "program/saved_modes.h"
 
+#include "base/assert.h"
 #include "program/coordinates.h"
 #include "program/events.h"
 #include "program/report.h"
@@ -111,6 +112,7 @@ static bool bring_back(struct program *p, const struct program_saved *saved)
 /* Behind the caller's parameters. */
 static unsigned place_of(const struct program_frame *frame)
 {
+    TAKT_ASSERT((unsigned)frame->kept + frame->locals <= PROGRAM_KEPT_MAX);
     return (unsigned)frame->kept + frame->locals;
 }
 
@@ -123,6 +125,7 @@ bool takt_saved_modes_restore(struct program *p, const struct program_frame *fra
 {
     struct program_saved saved;
 
+    TAKT_ASSERT(frame->is_saved && takt_saved_modes_end(frame) <= PROGRAM_KEPT_MAX);
     memcpy(&saved, &p->flow.kept[place_of(frame)], sizeof(saved));
     return bring_back(p, &saved);
 }

@@ -1,5 +1,6 @@
 #include "program/setting.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/emit.h"
@@ -61,6 +62,7 @@ static bool store_offset(struct program *p, enum step step, unsigned system, enu
 {
     const unsigned first = PARAMETER_SYSTEM_OFFSET + (system - 1) * PARAMETER_SYSTEM_STRIDE;
 
+    TAKT_ASSERT(system >= 1 && system <= COORDINATES_SYSTEMS && axis < AXIS_COUNT);
     return takt_words_store(p, step, first + axis, takt_coordinates_to_parameter(offset, axis));
 }
 
@@ -69,6 +71,7 @@ static bool set_system(struct program *p, enum step step, unsigned system)
     const unsigned rotate = PARAMETER_SYSTEM_ROTATE + (system - 1) * PARAMETER_SYSTEM_STRIDE;
     double value;
 
+    TAKT_ASSERT(system >= 1 && system <= COORDINATES_SYSTEMS);
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
         if (takt_coordinates_word(p, i, &value) && !store_offset(p, step, system, i, value)) {
             return false;
@@ -242,6 +245,7 @@ static struct move *emit_setup(struct program *p, unsigned which, double value)
 {
     struct move *m = takt_emit_event(p, MOVE_SETUP);
 
+    TAKT_ASSERT(which < MOVE_SETUP_VALUES);
     m->channel = which;
     m->setup = value;
     return m;

@@ -1,5 +1,6 @@
 #include "program/spline.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/circular.h"
 #include "program/coordinates.h"
@@ -65,6 +66,7 @@ static void add_even(struct program_spline *s, const double at_mm[2], double wei
 {
     const uint32_t order = s->nurbs.order;
 
+    TAKT_ASSERT(weight > 0.0);
     takt_nurbs_add_point(&s->nurbs, at_mm, weight);
     takt_nurbs_add_knot(&s->nurbs,
                         s->nurbs.points <= order ? 0.0 : (double)(s->nurbs.points - order));
@@ -72,6 +74,7 @@ static void add_even(struct program_spline *s, const double at_mm[2], double wei
 
 static void close_even(struct program_spline *s)
 {
+    TAKT_ASSERT(s->nurbs.points >= s->nurbs.order);
     s->closing = s->nurbs.order;
     s->knot_end = (double)(s->nurbs.points - s->nurbs.order + 1);
 }

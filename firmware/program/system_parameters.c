@@ -1,5 +1,6 @@
 #include "program/system_parameters.h"
 
+#include "base/assert.h"
 #include "program/coordinates.h"
 #include "program/tool_values.h"
 
@@ -22,6 +23,7 @@ static double tool_parameter(const struct program *p, unsigned number)
 {
     const struct tool *tool = takt_tool_values_find(p, p->modes.tool_current);
 
+    TAKT_ASSERT(is_tool(number));
     if (number == PARAMETER_TOOL_NUMBER) {
         return p->modes.tool_current;
     }

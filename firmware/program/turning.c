@@ -1,8 +1,8 @@
 #include "program/turning.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* -- the frame -- */
@@ -46,7 +46,7 @@ static void set_frame(struct turning *t)
 
 static void add(struct turning *t, bool rapid, struct profile_point end)
 {
-    assert(t->moves < sizeof(t->move) / sizeof(t->move[0]));
+    TAKT_ASSERT(t->moves < sizeof(t->move) / sizeof(t->move[0]));
     t->move[t->moves++] = (struct turning_move){.rapid = rapid, .end = end};
 }
 

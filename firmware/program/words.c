@@ -1,5 +1,6 @@
 #include "program/words.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/circular.h"
 #include "program/contour.h"
@@ -9,8 +10,6 @@
 #include "program/predefined.h"
 #include "program/report.h"
 #include "program/system_parameters.h"
-
-#include <assert.h>
 
 /* Letters that take a value now or, for U V W, are refused by name. */
 #define LETTERS_KNOWN                                                                              \
@@ -383,7 +382,7 @@ bool takt_words_store(struct program *p, enum step step, unsigned number, double
 {
     struct program_words *w = &p->words;
 
-    assert(w->assignments < PROGRAM_ASSIGNMENTS_MAX + PROGRAM_STORES_MAX);
+    TAKT_ASSERT(w->assignments < PROGRAM_ASSIGNMENTS_MAX + PROGRAM_STORES_MAX);
     struct program_assignment *a = &w->assignment[w->assignments];
 
     a->reference.number = (uint16_t)number;

@@ -1,5 +1,7 @@
 #include "replay/fit.h"
 
+#include "base/assert.h"
+
 /* Longest name of what is compared: "acceleration of X". */
 #define NAME_MAX_LENGTH 24
 
@@ -42,6 +44,7 @@ static bool is_same_limit(const char *what, int axis, double there, double here,
     char name[NAME_MAX_LENGTH] = {AXIS_LETTERS[axis], ' '};
     size_t length = 2;
 
+    TAKT_ASSERT(axis >= 0 && axis < AXIS_LINEAR_COUNT);
     for (; what[length - 2] != '\0' && length < NAME_MAX_LENGTH; length++) {
         name[length] = what[length - 2];
     }

@@ -1,5 +1,6 @@
 #include "replay/format.h"
 
+#include "base/assert.h"
 #include "base/crc32.h"
 #include "base/maths.h"
 
@@ -31,6 +32,7 @@ enum {
 
 void takt_replay_put(uint8_t *bytes, uint64_t value, unsigned size)
 {
+    TAKT_ASSERT(size <= sizeof value);
     for (unsigned i = 0; i < size; i++) {
         bytes[i] = (uint8_t)(value >> (8 * i));
     }
@@ -40,6 +42,7 @@ uint64_t takt_replay_get(const uint8_t *bytes, unsigned size)
 {
     uint64_t value = 0;
 
+    TAKT_ASSERT(size <= sizeof(uint64_t));
     for (unsigned i = 0; i < size; i++) {
         value |= (uint64_t)bytes[i] << (8 * i);
     }
@@ -48,6 +51,7 @@ uint64_t takt_replay_get(const uint8_t *bytes, unsigned size)
 
 void takt_replay_put_bits(struct replay_bits *b, unsigned value, unsigned count)
 {
+    TAKT_ASSERT(count <= 32);
     for (unsigned i = 0; i < count; i++, b->at++) {
         if (b->at / 8 < b->size) {
             b->bytes[b->at / 8] |= (uint8_t)((value >> i & 1U) << b->at % 8);
@@ -59,6 +63,7 @@ unsigned takt_replay_get_bits(struct replay_bits *b, unsigned count)
 {
     unsigned value = 0;
 
+    TAKT_ASSERT(count <= 32);
     for (unsigned i = 0; i < count; i++, b->at++) {
         if (b->at / 8 < b->size) {
             value |= ((unsigned)b->bytes[b->at / 8] >> b->at % 8 & 1U) << i;
@@ -86,6 +91,7 @@ static double get_double(const uint8_t *bytes)
 
 void takt_replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEADER_BYTES])
 {
+    TAKT_ASSERT(h->cycle_us > 0 && h->step_cycles > 0);
     memset(bytes, 0, REPLAY_HEADER_BYTES);
     memcpy(bytes, magic, sizeof(magic));
     takt_replay_put(bytes + AT_VERSION, REPLAY_VERSION, 4);

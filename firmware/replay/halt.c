@@ -1,5 +1,6 @@
 #include "replay/halt.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* Parts of what a cycle may use that the way to rest is reckoned with. */
@@ -18,6 +19,7 @@
 
 static double change_max(const struct rate *r)
 {
+    TAKT_ASSERT(r->limits.change > 0.0 && r->limits.kept > 0.0 && r->limits.kept < 1.0);
     return r->limits.change * (1.0 - r->limits.kept * HALT_RATE * HALT_RATE);
 }
 
@@ -41,6 +43,7 @@ double takt_halt_way(const struct rate *r)
     const double begun =
         t >= 0.0 ? (r->now + r->change * t / 3.0) * t : (high - m * t * t / 6.0) * t;
 
+    TAKT_ASSERT(!(high > 0.0) || c > 0.0);
     return high > 0.0 ? begun + 0.5 * high * (high / c + c / m) : 0.0;
 }
 
@@ -114,6 +117,7 @@ static struct halt_curve curve_of(const struct rate *r, double way, double n)
     const double cn = r->change * n * n;
     const double half = 0.5 / (n * n * n);
 
+    TAKT_ASSERT(n >= 1.0);
     return (struct halt_curve){(20.0 * way - 12.0 * rn - 3.0 * cn) * half,
                                (-30.0 * way + 16.0 * rn + 3.0 * cn) * half / n,
                                (12.0 * way - 6.0 * rn - cn) * half / (n * n)};
@@ -159,6 +163,7 @@ static double hop_cycles(const struct rate *r, double to, double way)
     const double n = takt_maths_ceil(maths_max(
         maths_max(takt_maths_cbrt(60.0 * way / bend_max(r)), by_change), 1.875 * way / to));
 
+    TAKT_ASSERT(to > 0.0 && way >= 0.0);
     return n <= HOP_MAX ? maths_max(n, 1.0) : 0.0;
 }
 
@@ -204,6 +209,7 @@ static double land(struct halt *h, struct rate *r, double way)
 {
     const struct halt_curve l = curve_of(r, way, h->cycles);
 
+    TAKT_ASSERT(h->cycles >= 1.0);
     h->cycles -= 1.0;
     if (h->cycles < 1.0) {
         takt_rate_set(r, 0.0);

@@ -1,5 +1,6 @@
 #include "replay/intake.h"
 
+#include "base/assert.h"
 #include "base/crc32.h"
 #include "base/handoff.h"
 
@@ -15,9 +16,11 @@ void takt_intake_open(struct intake *s, const struct replay_source *source)
 /* Has so much of the next record come? */
 static bool has(struct intake *s, size_t length)
 {
+    TAKT_ASSERT(length <= sizeof s->bytes);
     if (s->length < length) {
         s->length += s->source.read(s->source.context, s->bytes + s->length, length - s->length);
     }
+    TAKT_ASSERT(s->length <= sizeof s->bytes); /* the source gives no more than is asked for */
     return s->length >= length;
 }
 
@@ -60,6 +63,7 @@ static void take_section(struct intake *s, const uint8_t *bytes, size_t length)
 /* A block ends at a place. Ends come in order. */
 static void take_end(struct intake *s, uint64_t place)
 {
+    TAKT_ASSERT(place >= s->last_end && s->ends_came - s->ends_taken < INTAKE_ENDS_MAX);
     s->end[s->ends_came % INTAKE_ENDS_MAX] = (uint32_t)(place - s->last_end);
     s->last_end = place;
     handoff_set_count(&s->ends_came, s->ends_came + 1U);
@@ -68,6 +72,7 @@ static void take_end(struct intake *s, uint64_t place)
 /* The part of an interval, from 1, that bits tell. */
 static unsigned get_part(struct replay_bits *b, unsigned bits)
 {
+    TAKT_ASSERT(bits <= REPLAY_END_BITS);
     return (takt_replay_get_bits(b, bits) + 1U) << (REPLAY_END_BITS - bits);
 }
 
@@ -130,6 +135,7 @@ static void take_third(struct intake *s, const uint8_t *bytes)
 {
     int16_t *third = s->third[s->intervals_came % INTAKE_INTERVALS_MAX];
 
+    TAKT_ASSERT(s->intervals_came - s->intervals_taken < INTAKE_INTERVALS_MAX);
     for (unsigned axis = 0; axis < AXIS_LINEAR_COUNT; axis++) {
         third[axis] = (int16_t)(uint16_t)takt_replay_get(bytes + (size_t)2 * axis, 2);
     }
@@ -192,6 +198,9 @@ static void take_record(struct intake *s, size_t length)
 
 bool takt_intake_has_room(const struct intake *s)
 {
+    TAKT_ASSERT(s->intervals_came - s->intervals_taken <= INTAKE_INTERVALS_MAX);
+    TAKT_ASSERT(s->ends_came - s->ends_taken <= INTAKE_ENDS_MAX);
+    TAKT_ASSERT(s->sections_came - s->sections_taken <= INTAKE_SECTIONS_MAX);
     return s->intervals_came - s->intervals_taken + REPLAY_RECORD_INTERVALS <=
                INTAKE_INTERVALS_MAX &&
            s->ends_came - s->ends_taken + REPLAY_RECORD_ENDS <= INTAKE_ENDS_MAX &&

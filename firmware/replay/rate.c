@@ -1,5 +1,6 @@
 #include "replay/rate.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* What an evaluation once a cycle may be off the formulas of a rate that changes all the time. */
@@ -18,6 +19,7 @@ void takt_rate_init(struct rate *r, const struct plan_limits *limits, double kep
 {
     struct rate_limits *l = &r->limits;
 
+    TAKT_ASSERT(kept > 0.0 && kept < 1.0 && limits->cycle_s > 0.0);
     *r = (struct rate){.limits = {kept, 1.0, 1.0}, .now = 1.0};
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         const double v = limits->velocity_mm_s[i] * limits->cycle_s;
@@ -32,11 +34,13 @@ void takt_rate_init(struct rate *r, const struct plan_limits *limits, double kep
         l->change = maths_min(l->change, RATE_MARGIN * j / (5.0 * a));
         l->change = maths_min(l->change, RATE_MARGIN * maths_sqrt(j / (5.0 * v)));
         l->room = maths_min(l->room, RATE_MARGIN * ROOM_PART * j / v);
+        TAKT_ASSERT(l->change > 0.0 && l->room > 0.0);
     }
 }
 
 void takt_rate_set(struct rate *r, double to)
 {
+    TAKT_ASSERT(to >= 0.0 && to <= 1.0);
     r->now = to;
     r->change = 0.0;
 }
@@ -55,6 +59,7 @@ static double landing_change(double way, double change, double room)
 {
     const double left = way - 0.5 * change;
 
+    TAKT_ASSERT(room > 0.0);
     return left > 0.0 ? room * (maths_sqrt(0.25 + 2.0 * left / room) - 0.5) : 0.0;
 }
 
@@ -83,6 +88,7 @@ double takt_rate_step(struct rate *r, double to)
     const double landing = room_at(l, maths_max(high, to));
     const double before = r->now;
 
+    TAKT_ASSERT(to >= 0.0 && to <= 1.0 && r->now >= 0.0 && r->now <= 1.0);
     if (maths_abs(to - r->now) <= 0.5 * landing && maths_abs(r->change) <= landing) {
         r->now = to;
         r->change = 0.0;

@@ -1,11 +1,10 @@
 /* What the service starts: programs, and jogs, MDI lines and homing as short programs that it writes itself. */
+#include "base/assert.h"
 #include "base/decimal.h"
 #include "base/fnv.h"
 #include "base/maths.h"
 #include "program/parameters.h"
 #include "service/service_private.h"
-
-#include <assert.h>
 
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
@@ -20,6 +19,7 @@
 
 static void begin_job(struct service *s, enum service_job job)
 {
+    TAKT_ASSERT(job != SERVICE_NOTHING);
     s->job = job;
     s->finds_home = false;
     s->hold = PANEL_HOLD_NONE;
@@ -63,6 +63,7 @@ static void keep_tools(const struct service *s)
 
 void takt_service_end_job(struct service *s, enum panel_outcome outcome)
 {
+    TAKT_ASSERT(outcome != PANEL_OUTCOME_NONE);
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
         keep_modes(s);
     if (s->streams)
@@ -149,7 +150,7 @@ void takt_service_start_text_of(struct service *s, const struct controller_confi
 
 static void add_character(struct service *s, char c)
 {
-    assert(s->text_length < sizeof s->text);
+    TAKT_ASSERT(s->text_length < sizeof s->text);
     s->text[s->text_length++] = c;
 }
 
@@ -178,6 +179,7 @@ static void add_word(struct service *s, char letter, double value)
     char digits[DECIMAL_TEXT_MAX];
     const size_t length = takt_decimal_write(digits, value, JOG_PLACES);
 
+    TAKT_ASSERT(letter >= 'A' && letter <= 'Z');
     add_character(s, letter);
     for (size_t i = 0; i < length; i++)
         add_character(s, digits[i]);
@@ -196,6 +198,7 @@ static double jog_end(const struct service *s, bool negative)
     const double from = program_units(axis, s->at.at[s->settings.jog_axis]);
     const double distance = 0.001 * (double)s->settings.jog_distance;
 
+    TAKT_ASSERT(s->settings.jog_axis < AXIS_COUNT);
     if (s->settings.jog_distance > 0)
         return negative ? from - distance : from + distance;
     return negative ? program_units(axis, axis->travel_min_mm) + JOG_ROOM
@@ -207,6 +210,7 @@ bool takt_service_jog_is_possible(const struct service *s, bool negative)
     const struct machine_axis *axis = &s->controller.machine.axis[s->settings.jog_axis];
     const double end = jog_end(s, negative);
 
+    TAKT_ASSERT(s->settings.jog_axis < AXIS_COUNT);
     return axis->present && end >= program_units(axis, axis->travel_min_mm) &&
            end <= program_units(axis, axis->travel_max_mm);
 }
@@ -214,6 +218,7 @@ bool takt_service_jog_is_possible(const struct service *s, bool negative)
 /* G53 G1: a straight line to a place of the machine, whatever offsets are in effect. */
 void takt_service_start_jog(struct service *s, bool negative)
 {
+    TAKT_ASSERT(s->settings.jog_axis < AXIS_COUNT);
     s->text_length = 0;
     add_text(s, "G53 G1 ");
     add_word(s, AXIS_LETTERS[s->settings.jog_axis], jog_end(s, negative));
@@ -227,7 +232,7 @@ void takt_service_start_setup(struct service *s)
 {
     static const char letters[] = {'X', 'Y', 'Z', 'I', 'J', 'K', 'R'};
 
-    static_assert(sizeof letters == CORRECTION_SETUP_VALUES, "a letter for each number");
+    _Static_assert(sizeof letters == CORRECTION_SETUP_VALUES, "a letter for each number");
     s->text_length = 0;
     add_text(s, "G10 L13 ");
     for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
@@ -240,6 +245,7 @@ void takt_service_start_setup(struct service *s)
 
 static void add_home(struct service *s, unsigned axis)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     if (s->controller.machine.axis[axis].present)
         add_word(s, AXIS_LETTERS[axis], 0.0);
 }

@@ -1,6 +1,7 @@
 /*
  * Everything a panel can read, in counts of its register.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/parameters.h"
@@ -21,17 +22,20 @@ static uint32_t counts(double value, double per_unit, enum panel_id id)
     const struct panel_register *row = &takt_panel_registers[id];
     const double rounded = takt_maths_round(value * per_unit);
 
+    TAKT_ASSERT(id < REGISTER_COUNT && per_unit > 0.0);
     return (uint32_t)(int64_t)maths_clamp(rounded, (double)takt_panel_least(row),
                                           (double)panel_most(row));
 }
 
 static double shown_units(unsigned axis, double mm)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     return axis >= AXIS_LINEAR_COUNT ? mm * DEGREES_PER_RAD : mm;
 }
 
 static void set_axes(uint32_t *value, enum panel_id first, const struct point *at)
 {
+    TAKT_ASSERT(first + AXIS_COUNT <= REGISTER_COUNT);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value[first + i] =
             counts(shown_units(i, at->at[i]), COUNTS_PER_UNIT, (enum panel_id)(first + i));
@@ -240,6 +244,7 @@ static void look_at_work_offset(const struct service *s, uint32_t *value)
     const unsigned first =
         PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE;
 
+    TAKT_ASSERT(s->settings.work_system >= 1);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value[REGISTER_WORK_OFFSET_X + i] =
             counts(takt_parameters_get(s->config.parameters, first + i), COUNTS_PER_UNIT,

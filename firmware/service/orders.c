@@ -1,15 +1,14 @@
 /*
  * What a panel may order. Each order is checked as a whole first, then done: so nothing has changed when it is refused.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/parameters.h"
 #include "service/service_private.h"
 
-#include <assert.h>
-
-static_assert(REGISTER_CORRECTION_WEAR - REGISTER_CORRECTION_MATRIX + 1 == CORRECTION_LAYERS_COUNT,
-              "a coil for each layer, in their order");
+_Static_assert(REGISTER_CORRECTION_WEAR - REGISTER_CORRECTION_MATRIX + 1 == CORRECTION_LAYERS_COUNT,
+               "a coil for each layer, in their order");
 
 #define RAD_PER_DEGREE (MATHS_PI / 180.0)
 
@@ -18,6 +17,7 @@ static_assert(REGISTER_CORRECTION_WEAR - REGISTER_CORRECTION_MATRIX + 1 == CORRE
 
 static bool is_between(enum panel_id id, enum panel_id first, enum panel_id last)
 {
+    TAKT_ASSERT(first <= last);
     return id >= first && id <= last;
 }
 
@@ -76,6 +76,7 @@ static enum panel_verdict check_reset(const struct service *s)
 /* Coils that start something, written as 1. */
 static enum panel_verdict check_coil(const struct service *s, enum panel_id id)
 {
+    TAKT_ASSERT(id < REGISTER_COUNT);
     if (id == REGISTER_CYCLE_START)
         return check_start(s);
     if (id == REGISTER_RESUME)
@@ -126,6 +127,7 @@ static enum panel_verdict check_item(const struct service *s, const struct panel
     const enum panel_state state = takt_service_get_state(s);
     const bool is_coil = takt_panel_registers[item->id].form == PANEL_BIT;
 
+    TAKT_ASSERT(item->id < REGISTER_COUNT);
     if (is_coil && item->value == 0 && item->id != REGISTER_BLOCK_DELETE)
         return PANEL_DONE;
     if (!takt_panel_may_write(item->id, state))
@@ -187,6 +189,7 @@ static void switch_correction(struct service *s, unsigned layer, bool on)
 {
     struct service_settings *settings = &s->settings;
 
+    TAKT_ASSERT(layer < CORRECTION_LAYERS_COUNT);
     settings->corrections =
         on ? settings->corrections | 1U << layer : settings->corrections & ~(1U << layer);
     takt_correction_switch(takt_controller_get_correction(&s->controller),
@@ -271,6 +274,7 @@ static bool set_work_offset(struct service *s, unsigned axis, int64_t value)
     const bool good =
         takt_parameters_set(s->config.parameters, number, (double)value * UNITS_PER_COUNT);
 
+    TAKT_ASSERT(axis < AXIS_COUNT && s->settings.work_system >= 1);
     load_system(s);
     return good;
 }
@@ -292,12 +296,14 @@ static void set_tool_offset(struct service *s, unsigned axis, int64_t value)
 {
     const bool rotary = axis >= AXIS_LINEAR_COUNT;
 
+    TAKT_ASSERT(axis < AXIS_COUNT && selected_tool(s) != NULL);
     selected_tool(s)->offset.at[axis] =
         (double)value * UNITS_PER_COUNT * (rotary ? RAD_PER_DEGREE : 1.0);
 }
 
 static void set_setup(struct service_settings *settings, unsigned which, int64_t value)
 {
+    TAKT_ASSERT(which < CORRECTION_SETUP_VALUES);
     settings->setup[which] = (int32_t)value;
     settings->setup_given |= 1U << which;
 }
@@ -336,6 +342,7 @@ static bool set_setting(struct service_settings *settings, enum panel_id id, int
 
 static void set_rise(struct service *s, unsigned axis, int64_t value)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT);
     s->settings.rise[axis] = (int32_t)value;
     takt_correction_set_rise(takt_controller_get_correction(&s->controller), (enum axis)axis,
                              (double)value * UNITS_PER_COUNT);
@@ -376,6 +383,7 @@ static bool set_holding(struct service *s, enum panel_id id, int64_t value)
 static bool do_item(struct service *s, const struct panel_order_item *item,
                     const struct panel_order *order)
 {
+    TAKT_ASSERT(item->id < REGISTER_COUNT);
     if (takt_panel_registers[item->id].form != PANEL_BIT)
         return set_setting(&s->settings, item->id, item->value) ||
                set_holding(s, item->id, item->value);
@@ -418,6 +426,7 @@ enum panel_verdict takt_service_order(struct service *s, const struct panel_orde
     const struct service_settings before = s->settings;
     enum panel_verdict verdict;
 
+    TAKT_ASSERT(order->count <= PANEL_ORDER_MAX);
     if (is_ambiguous(order))
         return PANEL_WRONG_VALUE;
     verdict = check_order(s, order);

@@ -1,5 +1,6 @@
 #include "service/service.h"
 
+#include "base/assert.h"
 #include "base/fnv.h"
 #include "base/maths.h"
 #include "service/service_private.h"
@@ -82,6 +83,7 @@ uint32_t takt_service_get_cut_line(const struct service *s)
 /* The first alarm stays until it is acknowledged: it is the cause of the others. */
 void takt_service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text)
 {
+    TAKT_ASSERT(alarm != PANEL_ALARM_NONE);
     if (s->alarm != PANEL_ALARM_NONE)
         return;
     s->alarm = alarm;

@@ -8,6 +8,7 @@
  */
 #include "servo/between.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 static void begin(struct between *between, double at_mm)
@@ -41,6 +42,7 @@ void takt_between_take(struct between *between, double at_mm, double target_mm,
 
 void takt_between_at(const double piece[BETWEEN_COEFFICIENTS], double u, double place[3])
 {
+    TAKT_ASSERT(u >= 0.0 && u <= 1.0);
     place[0] = place[1] = place[2] = 0;
     for (unsigned i = BETWEEN_COEFFICIENTS; i > 0; i--) {
         place[2] = place[2] * u + 2 * place[1];

@@ -1,5 +1,6 @@
 #include "servo/compensation.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -13,6 +14,7 @@ void takt_compensation_init(struct compensation *compensation, const struct moto
 
 static double play_mm(const struct compensation *c)
 {
+    TAKT_ASSERT(c->direction >= -1 && c->direction <= 1);
     return c->direction * c->backlash_mm / 2;
 }
 
@@ -73,6 +75,7 @@ struct motor_port takt_compensation_get_port(struct compensation *compensation)
 static double crossing_s(double backlash_mm, double acceleration_mm_s2)
 {
     struct fade_pace second;
+    TAKT_ASSERT(backlash_mm >= 0.0);
     takt_fade_pace_set(&second, 1, 1.0 / FADE_CYCLES_MIN);
     return maths_sqrt(takt_fade_acceleration_per_s2(&second) * backlash_mm / acceleration_mm_s2);
 }

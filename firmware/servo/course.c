@@ -10,6 +10,7 @@
  */
 #include "servo/course.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #define COURSE_PLACES_PER_MM 1e9
@@ -27,11 +28,13 @@ static double allowed_velocity(double way_mm, double u_mm_s, const struct course
     double half = d_mm_s2 * t_s / 2;
     double square =
         half * half + d_mm_s2 * (2 * way_mm - u_mm_s * t_s) + ramps->end_mm_s * ramps->end_mm_s;
+    TAKT_ASSERT(way_mm >= 0.0 && t_s > 0.0);
     return square > half * half ? maths_sqrt(square) - half : 0;
 }
 
 double takt_course_approach(double value, double goal, double by)
 {
+    TAKT_ASSERT(by >= 0.0);
     if (maths_abs(goal - value) <= by)
         return goal;
     return goal > value ? value + by : value - by;
@@ -44,6 +47,7 @@ void takt_course_step(struct course *course, double target_mm, const struct cour
     double sign = way_mm < 0 ? -1 : 1;
     double u_mm_s = sign * course->velocity_mm_s;
     double brake_mm_s = ramps->deceleration_mm_s2 * cycle_s;
+    TAKT_ASSERT(cycle_s > 0.0);
     if (maths_abs(way_mm) <= brake_mm_s * cycle_s && maths_abs(u_mm_s) <= 2 * brake_mm_s) {
         *course = (struct course){target_mm, 0};
         return;
@@ -67,6 +71,7 @@ static void begin(struct course_average *average, const struct course *command, 
                   double cycle_s)
 {
     double step_mm = command->velocity_mm_s * cycle_s;
+    TAKT_ASSERT(count >= 1 && count <= COURSE_CYCLES_MAX);
     average->course =
         (struct course){command->at_mm + step_mm * (count - 1) / 2, command->velocity_mm_s};
     average->count = count;
@@ -81,6 +86,7 @@ static void begin(struct course_average *average, const struct course *command, 
 static uint32_t cycles_of(const struct course_ramps *ramps, double cycle_s)
 {
     double change_mm_s2 = ramps->acceleration_mm_s2 + 2 * ramps->deceleration_mm_s2;
+    TAKT_ASSERT(cycle_s > 0.0);
     return (uint32_t)maths_clamp(takt_maths_ceil(change_mm_s2 / (ramps->jerk_mm_s3 * cycle_s)), 1,
                                  COURSE_CYCLES_MAX);
 }
@@ -89,6 +95,7 @@ static uint32_t cycles_of(const struct course_ramps *ramps, double cycle_s)
 static double push(struct course_average *average)
 {
     int64_t place = place_of(average->course.at_mm);
+    TAKT_ASSERT(average->count > 0 && average->next < average->count);
     average->sum += place - average->place[average->next];
     average->place[average->next] = place;
     average->next = (average->next + 1) % average->count;

@@ -1,5 +1,7 @@
 #include "servo/dictionary.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 static uint32_t place(uint16_t index, uint8_t sub)

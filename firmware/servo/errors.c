@@ -2,6 +2,7 @@
  * Errors as CiA 301 tells them: error register, history, emergencies, and what an error of the
  * communication does to the node.
  */
+#include "base/assert.h"
 #include "servo/servo_private.h"
 
 #include <string.h>
@@ -41,6 +42,7 @@ static void send_emcy(struct servo *drive, const struct emcy *emcy)
 
 void takt_servo_send_waiting_emergencies(struct servo *drive)
 {
+    TAKT_ASSERT(drive->emcy_count <= SERVO_EMCY_QUEUE);
     while (drive->emcy_count > 0 && drive->now_ns >= drive->emcy_ns) {
         send_emcy(drive, &drive->emcy[0]);
         drive->emcy_count--;

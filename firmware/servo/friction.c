@@ -1,11 +1,13 @@
 #include "servo/friction.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* Straight from point to point. */
 static double size_at(const struct friction *f, double points)
 {
     const unsigned last = FRICTION_POINTS - 1;
+    TAKT_ASSERT(points >= 0.0);
     if (points >= last)
         return f->at[last];
     const unsigned k = (unsigned)points;

@@ -8,6 +8,7 @@
  *
  * The encoder is latched where switch and pulse truly are (hal/motor.h), not where the cycle happens to see them.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "servo/servo_private.h"
 
@@ -117,6 +118,7 @@ uint32_t takt_servo_inputs(const struct servo *drive)
 /* The pulse comes once a turn of the motor; the next one that is passed in this direction counts. */
 static void await_index(struct servo *drive, double direction)
 {
+    TAKT_ASSERT(direction != 0.0);
     drive->homing.index_direction = direction > 0 ? 1 : -1;
     drive->homing.pulses = drive->loop.sense.pulses;
     drive->homing.phase = HOMING_INDEX;
@@ -163,6 +165,7 @@ void takt_servo_interrupt_homing(struct servo *drive)
 
 static double speed_mm_s(const struct servo *drive, unsigned i)
 {
+    TAKT_ASSERT(i < 2);
     return drive->objects.settings.homing_velocity[i] / servo_velocity_scale(drive);
 }
 
@@ -171,6 +174,7 @@ static void run_towards(struct servo *drive, int8_t direction, double velocity_m
 {
     double acceleration_mm_s2 =
         drive->objects.settings.homing_acceleration / servo_velocity_scale(drive);
+    TAKT_ASSERT(velocity_mm_s >= 0.0 && cycle_ns > 0);
     takt_servo_run_at(drive, direction * servo_sign(drive) * velocity_mm_s, acceleration_mm_s2,
                       cycle_ns);
 }

@@ -1,5 +1,6 @@
 #include "servo/loop.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -16,6 +17,7 @@ void takt_servo_loop_init(struct servo_loop *loop, const struct servo_loop_confi
 {
     double travel_per_rad_mm = config->travel_per_revolution_mm / MATHS_TWO_PI;
     uint32_t counts = config->encoder_counts_per_revolution;
+    TAKT_ASSERT(config->travel_per_revolution_mm != 0.0);
     memset(loop, 0, sizeof *loop);
     loop->config = *config;
     loop->motor = *motor;
@@ -80,6 +82,7 @@ struct cycle {
 static struct cycle begin_cycle(struct servo_loop *loop, uint32_t cycle_ns)
 {
     uint32_t period_ns = loop->config.loop_period_us * 1000;
+    TAKT_ASSERT(cycle_ns > 0 && period_ns > 0);
     if (loop->cycle_ns != cycle_ns) {
         loop->cycle_ns = cycle_ns;
         loop->steps = (cycle_ns - 1) / period_ns + 1;
@@ -143,6 +146,7 @@ void takt_servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double velocity_mm_s = (command_mm - loop->command_mm) * loop->per_cycle_s;
     double acceleration_mm_s2 = (velocity_mm_s - loop->command_velocity_mm_s) * loop->per_cycle_s;
+    TAKT_ASSERT(loop->steps > 0);
     feed_forward(loop, &cycle, velocity_mm_s, acceleration_mm_s2);
     for (uint32_t i = 0; i < loop->steps; i++)
         step(loop, &cycle, loop->command_mm + velocity_mm_s * (i * loop->step_s));
@@ -156,6 +160,7 @@ void takt_servo_loop_follow_piece(struct servo_loop *loop, const double piece[BE
 {
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double place[3];
+    TAKT_ASSERT(loop->steps > 0);
     for (uint32_t i = 0; i < loop->steps; i++) {
         takt_between_at(piece, i * loop->step_s * loop->per_cycle_s, place);
         double velocity_mm_s = place[1] * loop->per_cycle_s;
@@ -214,6 +219,7 @@ void takt_servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns)
 
 void takt_servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm_s2)
 {
+    TAKT_ASSERT(deceleration_mm_s2 >= 0.0);
     stay_with_motor(loop, loop->measured_velocity_mm_s);
     loop->brake_mm_s2 = deceleration_mm_s2;
     loop->velocity_offset_mm_s = 0;
@@ -233,6 +239,7 @@ static bool stands(const struct servo_loop *loop, double moved_mm)
 
 static double slowed(double velocity_mm_s, double by_mm_s)
 {
+    TAKT_ASSERT(by_mm_s >= 0.0);
     if (maths_abs(velocity_mm_s) <= by_mm_s)
         return 0;
     return velocity_mm_s > 0 ? velocity_mm_s - by_mm_s : velocity_mm_s + by_mm_s;

@@ -4,6 +4,7 @@
  *
  *     WAITING --switch global 1, switch selective, fastscan--> CONFIGURATION --switch global 0--> WAITING
  */
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/node.h"
 #include "servo/servo_private.h"
@@ -36,6 +37,7 @@
 static uint32_t identity(struct servo *drive, unsigned part)
 {
     uint32_t value = 0;
+    TAKT_ASSERT(part < 4);
     (void)takt_servo_read_object(drive, 0x10180020u | (part + 1) << 8, &value);
     return value;
 }
@@ -53,6 +55,7 @@ static void select_by(struct servo *drive, unsigned part, uint32_t value)
 {
     struct drive_lss *lss = &drive->lss;
     bool is_next = part == lss->matched && value == identity(drive, part);
+    TAKT_ASSERT(part < IDENTITY_PARTS);
     lss->matched = (uint8_t)(is_next ? part + 1 : part == 0 && value == identity(drive, 0));
     if (lss->matched < IDENTITY_PARTS)
         return;
@@ -68,6 +71,7 @@ static void identify_by(struct servo *drive, unsigned step, uint32_t value)
     unsigned part = step < 2 ? step : 2 + (step - 2) / 2;
     uint32_t own = identity(drive, part);
     bool fits = step < 2 ? value == own : step % 2 == 0 ? own >= value : own <= value;
+    TAKT_ASSERT(step < 6);
     lss->identified = (uint8_t)(fits && step == lss->identified ? step + 1 : 0);
     if (lss->identified == 6) {
         lss->identified = 0;

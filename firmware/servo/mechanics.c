@@ -2,6 +2,7 @@
  * The drive's own table of its screw's error of pitch and its backlash (objects 2010 and 2011): as PDOs are mapped, points
  * are written while their number is 0, and count when it is written.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "servo/servo_private.h"
 

@@ -1,6 +1,7 @@
 /*
  * Modes of operation: where the command goes while the drive is enabled.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "servo/servo_private.h"
 
@@ -100,6 +101,7 @@ void takt_servo_run_at(struct servo *drive, double velocity_mm_s, double acceler
                        uint32_t cycle_ns)
 {
     double by_mm_s = acceleration_mm_s2 * (cycle_ns * 1e-9);
+    TAKT_ASSERT(acceleration_mm_s2 >= 0.0 && cycle_ns > 0);
     move_command(drive, takt_course_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s),
                  cycle_ns);
 }
@@ -180,6 +182,7 @@ void takt_servo_note_reached(struct servo *drive, bool is_inside, uint16_t time_
                              uint32_t cycle_ns)
 {
     struct drive_setpoints *s = &drive->setpoints;
+    TAKT_ASSERT(cycle_ns > 0);
     s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
     s->is_reached = is_inside && s->in_window_ns >= (uint64_t)time_ms * MILLISECOND_NS;
 }
@@ -245,6 +248,7 @@ static void run_position(struct servo *drive, uint32_t cycle_ns)
 /* Cycles of a period of object 60C2; mostly one. */
 static uint32_t period_cycles(const struct servo *drive, uint32_t cycle_ns)
 {
+    TAKT_ASSERT(cycle_ns > 0);
     if (2 * drive->interpolation_ns < 3 * (uint64_t)cycle_ns)
         return 1;
     return (uint32_t)((drive->interpolation_ns + cycle_ns / 2) / cycle_ns);

@@ -2,6 +2,7 @@
  * CiA 301: what the node does with frames and with time.
  */
 #include "canopen/node.h"
+#include "base/assert.h"
 #include "canopen/sync.h"
 #include "servo/servo_private.h"
 
@@ -104,6 +105,7 @@ void takt_servo_init(struct servo *drive, const struct servo_config *config,
                                            .write = takt_servo_write_sdo,
                                            .send = send_sdo,
                                            .context = drive};
+    TAKT_ASSERT(config->node <= NODE_MAX || config->node == LSS_NO_NODE);
     memset(drive, 0, sizeof *drive);
     drive->config = *config;
     drive->port = *port;
@@ -173,6 +175,7 @@ void takt_servo_restart_heartbeat(struct servo *drive)
 /* A heartbeat is watched from the first that comes (CiA 301, 7.2.8.3.2.2). */
 void takt_servo_restart_consumer(struct servo *drive, unsigned i)
 {
+    TAKT_ASSERT(i < sizeof drive->consumer_ns / sizeof drive->consumer_ns[0]);
     drive->consumer_ns[i] = DRIVE_NEVER;
     takt_servo_set_filter(drive);
     takt_servo_look_soon(drive);

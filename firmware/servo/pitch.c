@@ -1,5 +1,6 @@
 #include "servo/pitch.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/edge.h"
 #include "correction/spline.h"
@@ -27,6 +28,7 @@ static bool is_flat(const struct pitch *pitch)
 bool takt_pitch_make(struct pitch *pitch)
 {
     double knot[DRIVE_PITCH_POINTS];
+    TAKT_ASSERT(pitch->points <= DRIVE_PITCH_POINTS);
     for (unsigned i = 0; i < pitch->points; i++)
         knot[i] = i;
     if (pitch->points >= 2) {

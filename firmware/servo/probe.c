@@ -2,6 +2,7 @@
  * Touch probes (CiA 402-2, 60B8 ... 60BD): the position is latched at the very moment at which the input changes, or at
  * which the index pulse comes, as the hardware of a drive does it; within a cycle the motor runs evenly.
  */
+#include "base/assert.h"
 #include "servo/servo_private.h"
 
 /* Bits of touch probe 2 are so much higher than those of 1, and its values so much later. */
@@ -10,6 +11,7 @@
 
 static unsigned bits_of(unsigned word, unsigned probe)
 {
+    TAKT_ASSERT(probe < 2);
     return word >> SECOND_BITS * probe & 0xFF;
 }
 
@@ -39,6 +41,7 @@ static void latch(struct servo *drive, unsigned probe, bool rises, int32_t posit
     unsigned seen = (rises ? CIA402_PROBE_HAS_RISEN : CIA402_PROBE_HAS_FALLEN)
                     << SECOND_BITS * probe;
     bool is_first = !(p->probe_status & seen);
+    TAKT_ASSERT(probe < 2);
     if (!(function & CIA402_PROBE_ENABLE) || !(function & wanted) ||
         !(is_first || function & CIA402_PROBE_CONTINUOUS))
         return;
@@ -65,6 +68,7 @@ double takt_servo_get_position_at_mm(const struct servo *drive, double ratio)
 
 void takt_servo_touch(struct servo *drive, bool touches, double ratio)
 {
+    TAKT_ASSERT(ratio >= 0.0 && ratio <= 1.0);
     if (touches == drive->probe.touches)
         return;
     drive->probe.touches = touches;

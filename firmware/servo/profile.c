@@ -1,6 +1,7 @@
 /*
  * CiA 402: what the controlword and the motor make of the drive's state.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "servo/servo_private.h"
 
@@ -185,6 +186,7 @@ void takt_servo_take_mode(struct servo *drive, int8_t mode)
 void takt_servo_fail(struct servo *drive, uint16_t code, uint8_t error_register)
 {
     struct drive_process *p = &drive->objects.process;
+    TAKT_ASSERT(code != EMCY_NONE);
     if (drive->state == CIA402_FAULT_REACTION || drive->state == CIA402_FAULT)
         return;
     enter_state(drive, CIA402_FAULT_REACTION);
@@ -210,6 +212,7 @@ static void check_following(struct servo *drive, uint32_t cycle_ns)
 
 static void run_enabled(struct servo *drive, uint32_t cycle_ns)
 {
+    TAKT_ASSERT(drive->state == CIA402_ENABLED);
     if (drive->is_leaving) {
         double deceleration_mm_s2 = takt_servo_profile_deceleration_mm_s2(drive);
         if (takt_servo_slow(drive, deceleration_mm_s2, cycle_ns))
@@ -223,6 +226,7 @@ static void run_enabled(struct servo *drive, uint32_t cycle_ns)
 static void run_quick_stop(struct servo *drive, uint32_t cycle_ns)
 {
     int16_t option = drive->objects.settings.quick_stop_option;
+    TAKT_ASSERT(drive->state == CIA402_QUICK_STOP);
     if (option == STOP_BY_DISABLING) {
         enter_state(drive, CIA402_SWITCH_ON_DISABLED);
         takt_servo_loop_coast(&drive->loop, cycle_ns);
@@ -238,6 +242,7 @@ static void run_quick_stop(struct servo *drive, uint32_t cycle_ns)
 
 static void run_fault_reaction(struct servo *drive, uint32_t cycle_ns)
 {
+    TAKT_ASSERT(drive->state == CIA402_FAULT_REACTION);
     if (drive->objects.settings.fault_reaction_option == STOP_BY_DISABLING) {
         enter_state(drive, CIA402_FAULT);
         takt_servo_loop_coast(&drive->loop, cycle_ns);
@@ -248,6 +253,7 @@ static void run_fault_reaction(struct servo *drive, uint32_t cycle_ns)
 
 void takt_servo_move(struct servo *drive, uint32_t cycle_ns)
 {
+    TAKT_ASSERT(cycle_ns > 0);
     drive->is_limited = false;
     switch (drive->state) {
     case CIA402_ENABLED:

@@ -1,6 +1,7 @@
 /*
  * Values of the objects that the machine makes at power-on, and what motion needs to know of the settings.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "servo/servo_private.h"
 

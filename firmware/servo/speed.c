@@ -2,6 +2,7 @@
  * Modes of velocity and torque: profile velocity (3) and profile torque (4), which go to their target by ramps, and cyclic
  * synchronous velocity (9) and torque (10), whose targets the controller makes. The position loop rests.
  */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "servo/servo_private.h"
 
@@ -17,12 +18,14 @@ static double target_velocity_mm_s(const struct servo *drive)
 static double limited_mm_s(struct servo *drive, double velocity_mm_s, double most_mm_s)
 {
     double limited = maths_clamp(velocity_mm_s, -most_mm_s, most_mm_s);
+    TAKT_ASSERT(most_mm_s >= 0.0);
     drive->is_limited = limited != velocity_mm_s;
     return limited;
 }
 
 static void turn(struct servo *drive, double velocity_mm_s, uint32_t cycle_ns)
 {
+    TAKT_ASSERT(cycle_ns > 0);
     drive->velocity_mm_s = velocity_mm_s;
     takt_servo_loop_turn(&drive->loop, velocity_mm_s, cycle_ns);
 }

@@ -1,5 +1,6 @@
 #include "servo/stored.h"
 
+#include "base/assert.h"
 #include "canopen/little_endian.h"
 #include "canopen/node.h"
 #include "servo/servo_private.h"
@@ -16,6 +17,8 @@ bool takt_servo_is_stored(const struct object_row *row)
 
 static size_t width_of(const struct object_row *row)
 {
+    TAKT_ASSERT(row->type == OBJECT_STRING ||
+                takt_object_type_bytes((enum object_type)row->type) <= 4);
     return row->type == OBJECT_STRING ? DRIVE_LABEL_SIZE
                                       : takt_object_type_bytes((enum object_type)row->type);
 }

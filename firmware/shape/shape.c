@@ -1,5 +1,6 @@
 #include "shape/shape.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <stddef.h>
@@ -34,6 +35,7 @@ static double half_period(const struct shape_mode mode[SHAPE_MODES], double cycl
 {
     double cycles = 1.0;
 
+    TAKT_ASSERT(cycle_s > 0.0);
     for (unsigned n = 0; n < SHAPE_MODES; n++) {
         if (is_mode(&mode[n])) {
             cycles = maths_max(cycles, takt_maths_round(0.5 * takt_zv_period(&mode[n], cycle_s)));
@@ -64,6 +66,7 @@ static void make_train(const struct shape_config *config, unsigned axis, struct 
 {
     const struct shape_mode *mode = config->mode[axis];
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     for (unsigned n = 0; n < SHAPE_MODES; n++) {
         struct train one;
 
@@ -163,6 +166,7 @@ static double mean(const struct shape *s, unsigned axis)
     const double now = past(s, 0)->at[axis];
     double away = 0.0;
 
+    TAKT_ASSERT(axis < AXIS_COUNT && t->count > 0);
     for (uint32_t i = 0; i < t->count; i++) {
         away += t->impulse[i].weight * (past(s, t->impulse[i].cycles)->at[axis] - now);
     }
@@ -206,6 +210,7 @@ const struct point *takt_shape_input(const struct shape *s)
  */
 static double leave(double limit, double below, double change)
 {
+    TAKT_ASSERT(limit >= 0.0 && below >= 0.0);
     return maths_max(limit / (1.0 + 2.0 * below), limit - below * change);
 }
 

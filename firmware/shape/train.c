@@ -1,8 +1,7 @@
 #include "shape/train.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
-
-#include <assert.h>
 
 void takt_train_set_none(struct train *t)
 {
@@ -23,7 +22,7 @@ static void add_whole(struct train *t, uint32_t cycles, double weight)
             return;
         }
     }
-    assert(t->count < TRAIN_IMPULSES_MAX);
+    TAKT_ASSERT(t->count < TRAIN_IMPULSES_MAX);
     t->impulse[t->count++] = (struct impulse){cycles, weight};
 }
 
@@ -32,6 +31,7 @@ void takt_train_add(struct train *t, double cycles, double weight)
     const double whole = takt_maths_floor(cycles);
     const double part = cycles - whole;
 
+    TAKT_ASSERT(cycles >= 0.0);
     add_whole(t, (uint32_t)whole, (1.0 - part) * weight);
     if (part > 0.0) {
         add_whole(t, (uint32_t)whole + 1, part * weight);
@@ -54,6 +54,7 @@ void takt_train_append(struct train *t, const struct train *second)
 {
     const struct train first = *t;
 
+    TAKT_ASSERT(first.count > 0 && second->count > 0);
     takt_train_set_none(t);
     for (uint32_t i = 0; i < first.count; i++) {
         for (uint32_t k = 0; k < second->count; k++) {
@@ -67,6 +68,7 @@ double takt_train_mean(const struct train *t)
 {
     double mean = 0.0;
 
+    TAKT_ASSERT(t->count <= TRAIN_IMPULSES_MAX);
     for (uint32_t i = 0; i < t->count; i++) {
         mean += t->impulse[i].weight * (double)t->impulse[i].cycles;
     }

@@ -1,9 +1,11 @@
 #include "shape/zv.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 double takt_zv_period(const struct shape_mode *mode, double cycle_s)
 {
+    TAKT_ASSERT(mode->hz > 0.0 && mode->damping >= 0.0 && mode->damping < 1.0 && cycle_s > 0.0);
     return 1.0 / (mode->hz * cycle_s * maths_sqrt(1.0 - mode->damping * mode->damping));
 }
 

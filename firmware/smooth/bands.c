@@ -1,5 +1,7 @@
 #include "smooth/bands.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 /* Units that a sample moves in one step at most. */
@@ -33,6 +35,7 @@ static void add_corner(struct relax *x, const struct window *w, unsigned group, 
     const unsigned first = group * w->capacity + x->corners.piece[corner];
     const float *row = x->corners.weight[corner];
 
+    TAKT_ASSERT(x->corners.piece[corner] + 3U < w->count);
     for (unsigned i = 0; i < 4; i++) {
         for (unsigned k = i; k < 4; k++) {
             x->band[k - i][first + i] += weight * row[i] * row[k];
@@ -52,6 +55,7 @@ static void factor(struct relax *x, const struct window *w, unsigned group)
     float *restrict d2 = x->band[2] + first;
     float *restrict d3 = x->band[3] + first;
 
+    TAKT_ASSERT(w->count <= w->capacity);
     for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
         const float per_d = 1.0f / d0[i];
         const float l1 = d1[i] * per_d;

@@ -1,5 +1,7 @@
 #include "smooth/head.h"
 
+#include "base/assert.h"
+
 #include <string.h>
 
 static unsigned most_samples(const struct route *r)
@@ -12,6 +14,7 @@ void takt_head_keep(struct smooth_head *h, const struct window *w, const struct 
 {
     const unsigned most = most_samples(r);
 
+    TAKT_ASSERT(most > SMOOTH_FIXED);
     h->proved = proved + SMOOTH_FIXED < most ? proved : most - SMOOTH_FIXED;
     memcpy(h->origin, w->origin, sizeof h->origin);
     for (unsigned i = 0; i < most && i < w->count; i++) {
@@ -27,6 +30,7 @@ void takt_head_take(const struct smooth_head *h, struct window *w, const struct 
 {
     const unsigned most = most_samples(r);
 
+    TAKT_ASSERT(h->proved + SMOOTH_FIXED <= most);
     memcpy(w->origin, h->origin, sizeof h->origin);
     w->count = h->proved + SMOOTH_FIXED;
     w->at_end = false;

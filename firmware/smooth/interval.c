@@ -1,5 +1,6 @@
 #include "smooth/interval.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "smooth/window.h"
 
@@ -54,6 +55,7 @@ double takt_interval_of(const struct smooth_limits *machine, const struct route 
 {
     struct smooth_limits curve = *machine;
 
+    TAKT_ASSERT(r->moved != 0 && tolerance_mm > 0.0);
     takt_smooth_limit(&curve, r->tolerance_mm);
     return maths_max(soonest_interval(&curve, r->moved, tolerance_mm),
                      longest_ramp(machine, r->moved) * WINDOW_OF_RAMP / window_capacity(r));

@@ -1,5 +1,6 @@
 #include "smooth/limits.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
@@ -48,6 +49,7 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
 
 void takt_smooth_limit(struct smooth_limits *limits, double tolerance_mm)
 {
+    TAKT_ASSERT(limits->cycle_s > 0.0 && tolerance_mm > 0.0);
     limit_reached(limits);
     limit_chord(limits, tolerance_mm);
 }

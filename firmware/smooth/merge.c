@@ -1,5 +1,6 @@
 #include "smooth/merge.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 void takt_merge_open(struct merge *m, const struct move *move, uint32_t number,
@@ -52,6 +53,7 @@ static bool passes_all(const struct merge *m, const struct point *end, double wi
 {
     double last = 0.0;
 
+    TAKT_ASSERT(m->points <= MERGE_POINTS_MAX);
     for (unsigned i = 0; i < m->points; i++) {
         double distance;
         const double place = place_beside(&m->curve.start, end, &m->point[i], &distance);
@@ -69,6 +71,7 @@ bool takt_merge_take(struct merge *m, const struct move *move, uint32_t number,
 {
     struct curve longer;
 
+    TAKT_ASSERT(within_mm >= 0.0);
     if (!m->open || m->points == MERGE_POINTS_MAX || !is_alike(m, move, curve)) {
         return false;
     }

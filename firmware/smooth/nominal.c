@@ -1,5 +1,6 @@
 #include "smooth/nominal.h"
 
+#include "base/assert.h"
 #include "smooth/single.h"
 
 /* Part of the axes' acceleration and jerk for the nominal feed along the path; smoothing needs the rest to round its ramps. */
@@ -105,6 +106,7 @@ void takt_nominal_set(struct route_element *e, const struct curve *curve, float 
     e->feed_mm_s = per_mm * feed;
     e->along.acceleration = per_mm * along_of(&b, &r->slots, feed);
     e->along.jerk = per_mm * jerk_of(&b, &r->slots);
+    TAKT_ASSERT(e->feed_mm_s > 0.0f && e->along.acceleration > 0.0f && e->along.jerk > 0.0f);
     r->moved |= moved_by(&b);
 }
 
@@ -117,6 +119,7 @@ static float feed_over(const struct route_slots *slots, const float d[], float w
     float square = SINGLE_INFINITY;
     float cube = SINGLE_INFINITY;
 
+    TAKT_ASSERT(w_mm >= 0.0f);
     for (unsigned i = 0; i < slots->count; i++) {
         const float turn = single_abs(d[i]) / slots->weight[i];
 

@@ -1,5 +1,6 @@
 #include "smooth/order.h"
 
+#include "base/assert.h"
 #include "smooth/single.h"
 
 #include <string.h>
@@ -93,6 +94,7 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
         curved ? takt_route_straight(r, l->element, l->at_mm, CURVED_LEAVES * tolerance_mm)
                : chord_mm + 3.0f * tolerance_mm;
 
+    TAKT_ASSERT(l->at_mm <= end_mm);
     l->within_mm = chord->within_mm - (curved ? CURVED_OFF * tolerance_mm : 0.0f);
     l->ends = curved || l->at_mm + (double)reach_mm >= end_mm;
     return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
@@ -112,6 +114,7 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
     uint32_t hint = l->element;
 
     l->end_mm = link_end(r, chord, l, chord_mm);
+    TAKT_ASSERT(l->end_mm >= l->at_mm);
     l->passed =
         route_programmed(r, l->element) < chord->least_mm_s[route_element(r, l->element)->rotary];
     takt_route_point(r, l->end_mm, &hint, l->end);
@@ -124,6 +127,7 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
 /* On from a link to the next one, of the same element or a later one. */
 static void go_on(const struct route *r, struct link *l)
 {
+    TAKT_ASSERT(l->element < r->count);
     l->at_mm = l->end_mm;
     l->element += l->end_mm == route_end_of(r, l->element) ? 1 : 0;
     memcpy(l->at, l->end, sizeof l->at);
@@ -165,6 +169,7 @@ static struct parts pass_end(const struct route *r, const struct order_chord *ch
 /* Where there are too many, the lowest goes, unless the next lies beyond the place thought to be beside the curve. */
 static void add_span(struct order *o, double first_mm, double last_mm, double believed_mm)
 {
+    TAKT_ASSERT(first_mm <= last_mm && o->count <= ORDER_SPANS);
     if (o->count > 0 && o->span[o->count - 1].last_mm == first_mm) {
         o->span[o->count - 1].last_mm = last_mm;
         return;
@@ -248,6 +253,7 @@ double takt_order_place(const struct order *o, double at_mm)
 {
     unsigned i = o->count - 1;
 
+    TAKT_ASSERT(o->count > 0 && o->count <= ORDER_SPANS);
     while (i > 0 && o->span[i].first_mm > at_mm) {
         i--;
     }

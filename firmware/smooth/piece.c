@@ -1,5 +1,6 @@
 #include "smooth/piece.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -46,6 +47,7 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     struct verifier_need need;
     struct verifier_rate rate;
 
+    TAKT_ASSERT(s->taken < s->ready && i + 3 < w->count);
     takt_route_move(&s->route, told, &s->move);
     piece->move = &s->move;
     piece->number = route_element(&s->route, told)->number;
@@ -68,6 +70,7 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
 void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
                        bool leaves)
 {
+    TAKT_ASSERT(s->standing == 0);
     s->stand_rotary = of->rotary;
     s->stand_number = of->number;
     s->stand_at = *at;
@@ -80,6 +83,7 @@ void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
     const double change_per_s = 2.0 / s->change.rounding_s;
     const struct point at = s->stand_at;
 
+    TAKT_ASSERT(s->standing > 0);
     s->standing--;
     *piece = (struct smooth_piece){
         .move = &s->move,

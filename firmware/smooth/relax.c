@@ -11,6 +11,7 @@
  */
 #include "smooth/relax.h"
 
+#include "base/assert.h"
 #include "smooth/bands.h"
 #include "smooth/single.h"
 
@@ -102,6 +103,7 @@ static void set_scale(struct relax_scale *s, const struct window *w, const struc
 {
     const float d = (float)w->interval_s;
 
+    TAKT_ASSERT(tolerance_mm > 0.0f && d > 0.0f);
     memset(s, 0, sizeof(*s));
     s->change = r->slots.change_per_s * d;
     s->rounded = r->slots.rounded_per_s2 * d * d;
@@ -154,6 +156,7 @@ static void add_corner(struct relax_corners *c, const struct window *w, const st
     const double at = route_element(r, element)->start_mm;
     unsigned i = *sample;
 
+    TAKT_ASSERT(c->count < c->capacity);
     while (i + 2 < w->count && w->at_mm[i + 1] <= at) {
         i++;
     }

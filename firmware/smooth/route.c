@@ -1,9 +1,9 @@
 #include "smooth/route.h"
 
+#include "base/assert.h"
 #include "smooth/nominal.h"
 #include "smooth/single.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define NEWTON_STEPS 3
@@ -33,6 +33,7 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
             s->count++;
         }
     }
+    TAKT_ASSERT(s->count > 0);
     s->groups = (s->count + SMOOTH_LANES - 1) / SMOOTH_LANES;
 }
 
@@ -117,6 +118,7 @@ static unsigned char find_mode(struct route *r, const struct move *move)
         }
         found = r->mode[i].used == 0 ? i : found;
     }
+    TAKT_ASSERT(r->mode[found].used == 0);
     r->mode[found].move = *move;
     r->mode[found].used = 1;
     return (unsigned char)found;
@@ -149,6 +151,7 @@ static void keep_curved(struct route *r, const struct curve *curve, float per_mm
 {
     struct route_curved *b = &r->curved[r->curved_count % SMOOTH_CURVED_MAX];
 
+    TAKT_ASSERT(r->curved_count - r->curved_first < SMOOTH_CURVED_MAX);
     b->kind = curve->kind;
     b->per_mm = per_mm;
     if (curve->kind == CURVE_ARC) {
@@ -168,7 +171,8 @@ void takt_route_push(struct route *r, const struct move *move, uint32_t number,
     const double start_mm = takt_route_end(r);
     const float per_mm = weighted_length(curve);
 
-    assert(takt_route_has_room(r));
+    TAKT_ASSERT(takt_route_has_room(r));
+    TAKT_ASSERT(curve->length_mm > 0.0 && per_mm > 0.0F);
     gather(r, &curve->start, &r->start[(size_t)route_slot(r, r->count) * r->slots.count]);
     gather(r, &curve->end, r->end);
     memset(e, 0, sizeof(*e));
@@ -194,6 +198,7 @@ void takt_route_forget(struct route *r, double at_mm)
     while (r->first + 1 < r->count && route_end_of(r, r->first) < at_mm) {
         const struct route_element *e = route_element(r, r->first);
 
+        TAKT_ASSERT(r->mode[e->mode].used > 0);
         r->mode[e->mode].used--;
         r->curved_first += e->curved ? 1 : 0;
         r->first++;
@@ -204,6 +209,7 @@ uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint)
 {
     uint32_t i = hint < r->first ? r->first : hint;
 
+    TAKT_ASSERT(r->count > r->first);
     if (i >= r->count) {
         i = r->count - 1;
     }
@@ -219,6 +225,7 @@ uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint)
 /* Route for a mm of a curved element. */
 static float per_mm_of(const struct route *r, uint32_t index)
 {
+    TAKT_ASSERT(route_element(r, index)->curved);
     return r->curved[route_element(r, index)->curved_number % SMOOTH_CURVED_MAX].per_mm;
 }
 
@@ -237,6 +244,7 @@ static void curved_curve(const struct route *r, uint32_t index, struct curve *c)
     const struct route_element *e = route_element(r, index);
     const struct route_curved *b = &r->curved[e->curved_number % SMOOTH_CURVED_MAX];
 
+    TAKT_ASSERT(e->curved);
     c->kind = b->kind;
     c->rotary = e->rotary;
     c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
@@ -271,6 +279,7 @@ void takt_route_place(const struct route *r, uint32_t index, double at_mm, doubl
     const double *start = route_start(r, index);
     const double *end = route_end_point(r, index);
 
+    TAKT_ASSERT(index >= r->first && index < r->count && length > 0.0);
     if (e->curved && part < 1.0) {
         struct curve c;
         struct point q;
@@ -385,6 +394,7 @@ void takt_route_corner(const struct route *r, uint32_t index, float before[], fl
 {
     const double at_mm = route_element(r, index)->start_mm;
 
+    TAKT_ASSERT(index > r->first && index < r->count);
     (void)takt_route_direction(r, index - 1, at_mm, before);
     (void)takt_route_direction(r, index, at_mm, after);
 }
@@ -469,6 +479,7 @@ static void closest_on(const struct route *r, uint32_t index, const double x[], 
     const double low = maths_clamp(from_mm - e->start_mm, 0.0, length);
     const double high = maths_clamp(to_mm - e->start_mm, 0.0, length);
 
+    TAKT_ASSERT(from_mm <= to_mm);
     f->element = index;
     if (e->curved) {
         closest_on_curved(r, index, x, low, high, at_mm - e->start_mm, f);

@@ -1,5 +1,6 @@
 #include "smooth/smooth.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "smooth/exact.h"
 #include "smooth/head.h"
@@ -8,7 +9,6 @@
 #include "smooth/single.h"
 #include "smooth/worth.h"
 
-#include <assert.h>
 #include <string.h>
 
 /* Rounds of smoothing and timing a window. A chain's first one begins from nothing. */
@@ -35,6 +35,7 @@ _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 10
 
 void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits)
 {
+    TAKT_ASSERT(limits->cycle_s > 0.0);
     s->limits = *limits;
     takt_smooth_reset(s);
 }
@@ -95,6 +96,7 @@ static double find_interval(const struct smooth *s)
 static void set_interval(struct smooth *s)
 {
     const double interval_s = find_interval(s);
+    TAKT_ASSERT(interval_s > 0.0);
 
     s->moved = s->route.moved;
     find_change(s, interval_s, &s->change);
@@ -111,6 +113,7 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
+    TAKT_ASSERT(!s->open && move->tolerance_mm > 0.0);
     takt_smooth_limit(&limits, tolerance_mm);
     takt_route_init(&s->route, &limits, tolerance_mm);
     s->window.count = 0;
@@ -134,6 +137,7 @@ static void begin(struct smooth *s, const struct move *move)
 /* Where the axes stand: whatever ends there, a curve may begin anew. */
 static void begin_anew(struct smooth *s)
 {
+    TAKT_ASSERT(s->open && s->ready == 0);
     set_interval(s);
     s->window.count = SMOOTH_FIXED;
     s->starts = true;
@@ -152,7 +156,7 @@ static void close_merge(struct smooth *s)
 void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number,
                       const struct curve *curve)
 {
-    assert(takt_smooth_has_room(s) && takt_smooth_joins(s, move));
+    TAKT_ASSERT(takt_smooth_has_room(s) && takt_smooth_joins(s, move));
     if (!s->open) {
         begin(s, move);
     }
@@ -183,6 +187,7 @@ static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, do
     const struct route_element *e = route_element(&s->route, element);
     const float ahead = (float)(known_mm - at_mm);
 
+    TAKT_ASSERT(element >= s->route.first && element < s->route.count);
     return takt_braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
 }
 
@@ -190,6 +195,7 @@ static bool last_feels_end(const struct smooth *s, double known_mm)
 {
     const unsigned last = s->window.count - 1;
 
+    TAKT_ASSERT(s->window.count > 0);
     return feels_end(s, s->window.at_mm[last], s->window.element[last], known_mm);
 }
 
@@ -281,6 +287,7 @@ static unsigned wanted(const struct smooth *s)
     const unsigned pieces = s->window.count - 3;
     const unsigned enough = kept_most(s) + MARGIN;
 
+    TAKT_ASSERT(s->window.count > 3);
     return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
@@ -300,6 +307,7 @@ static unsigned kept(const struct smooth *s, unsigned good)
 {
     const struct window *w = &s->window;
 
+    TAKT_ASSERT(good <= s->window.count);
     if (w->at_end && !s->finished) {
         return good / BLIND_PART;
     }
@@ -318,6 +326,7 @@ static unsigned kept(const struct smooth *s, unsigned good)
  */
 static void fall_back(struct smooth *s)
 {
+    TAKT_ASSERT(s->head.proved > 0);
     s->ready = s->head.proved;
     s->proved = 0;
     s->stops = true;
@@ -349,6 +358,7 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ve
 {
     float before_mm = SINGLE_INFINITY;
 
+    TAKT_ASSERT(s->window.count > SMOOTH_FIXED);
     verified(s, v);
     for (unsigned i = 0; i < ATTEMPTS && v->good < wanted(s); i++) {
         if (v->beyond_mm > NEARER * before_mm) {
@@ -365,6 +375,7 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ve
 /* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
 static void follow_ready(struct smooth *s, const struct verifier_verdict *v)
 {
+    TAKT_ASSERT(s->ready > 0 && s->ready + 1 < s->window.count);
     if (s->ready == v->followed && !s->stops) {
         s->order = v->order;
     } else {
@@ -378,6 +389,7 @@ static void follow_ready(struct smooth *s, const struct verifier_verdict *v)
 /* The path itself is taken from where the axes rest: to that place at least. */
 static void take_path(struct smooth *s, double to_mm)
 {
+    TAKT_ASSERT(s->head.proved == 0);
     s->exact = true;
     s->exact_mm = to_mm;
     s->ready = 0;
@@ -421,8 +433,8 @@ static void choose(struct smooth *s)
 }
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
-static void find_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
-                     struct verifier_verdict *v)
+static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
+                       struct verifier_verdict *v)
 {
     for (unsigned i = 0; i < rounds; i++) {
         relax_and_locate(s, scratch);
@@ -445,12 +457,12 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
     const bool goes_on = s->head.proved > 0;
     struct verifier_verdict v;
 
-    find_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, &v);
+    search_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, &v);
     if (goes_on && is_stuck(s)) {
         s->window.count = SMOOTH_FIXED;
         s->window.at_end = false;
         takt_window_extend(&s->window, &s->route);
-        find_way(s, scratch, ROUNDS_FIRST, &v);
+        search_way(s, scratch, ROUNDS_FIRST, &v);
     }
     choose(s);
     if (s->ready > 0) {
@@ -461,6 +473,7 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
 static void drop_taken(struct smooth *s)
 {
+    TAKT_ASSERT(s->taken == s->ready);
     takt_window_drop(&s->window, &s->route, s->taken);
     s->taken = 0;
     s->ready = 0;
@@ -491,6 +504,7 @@ static void end_element(struct smooth *s)
     struct window *w = &s->window;
     const uint32_t next = w->element[0] + 1;
 
+    TAKT_ASSERT(w->element[0] < s->route.count);
     if (next == s->route.count) {
         takt_smooth_reset(s);
         return;
@@ -520,6 +534,7 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
     const bool goes = takt_exact_next(&s->window, &s->route, &s->limits, &s->move, curve);
     const bool ends = s->window.at_mm[0] >= route_end_of(&s->route, element);
 
+    TAKT_ASSERT(s->exact);
     s->move.line = route_element(&s->route, told)->line;
     piece->move = &s->move;
     piece->number = route_element(&s->route, told)->number;
@@ -534,6 +549,7 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
 
 static void take_piece(struct smooth *s, struct smooth_piece *piece)
 {
+    TAKT_ASSERT(s->taken < s->ready);
     takt_smooth_set_piece(s, piece);
     if (s->starts) {
         s->starts = false;

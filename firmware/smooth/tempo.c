@@ -13,6 +13,7 @@
  */
 #include "smooth/tempo.h"
 
+#include "base/assert.h"
 #include "smooth/single.h"
 #include "smooth/verifier.h"
 
@@ -288,6 +289,7 @@ static void solve(struct tempo *p)
     float *restrict d2 = p->band[2];
     float *restrict y = p->step;
 
+    TAKT_ASSERT(p->pieces > 0);
     for (unsigned i = 0; i + 2 < count; i++) {
         const float l1 = d1[i] / d0[i];
         const float l2 = d2[i] / d0[i];
@@ -315,6 +317,7 @@ static void solve(struct tempo *p)
 /* Lanes that what is left from i on takes. */
 static unsigned lanes_used(unsigned count, unsigned i)
 {
+    TAKT_ASSERT(i < count);
     return count - i < SMOOTH_LANES ? count - i : SMOOTH_LANES;
 }
 
@@ -462,6 +465,7 @@ static void set_differences(struct tempo *p, const struct window *w, const struc
 
 static void set_even(struct tempo *p, const struct window *w)
 {
+    TAKT_ASSERT(w->count > SMOOTH_FIXED && w->count <= SMOOTH_SAMPLES_MAX);
     p->pieces = w->count - SMOOTH_FIXED;
     for (unsigned i = 0; i < TEMPO_MAX; i++) {
         p->rate_squared[i] = 1.0f;
@@ -483,6 +487,7 @@ void takt_tempo_find(struct tempo *p, const struct window *w, const struct route
         assemble(p, r, &free, weight);
         solve(p);
         const float t = part_of_step(p, r);
+        TAKT_ASSERT(t >= 0.0f);
 
         for (unsigned i = 0; i < p->pieces + 2; i++) {
             p->rate_squared[i] += t * p->step[i];
@@ -494,6 +499,7 @@ void takt_tempo_find(struct tempo *p, const struct window *w, const struct route
 void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
                      float rate)
 {
+    TAKT_ASSERT(rate > 0.0f);
     set_even(p, w);
     for (unsigned i = 2; i < p->pieces + 2; i++) {
         if (i + around > piece + 1 && i < piece + 1 + around) {
@@ -511,6 +517,7 @@ float takt_tempo_rate_squared(const struct tempo *p, float u, float *slope)
     const float slope0 = e[1] - e[0];
     const float slope1 = e[2] - e[1];
 
+    TAKT_ASSERT(p->pieces > 0);
     *slope = slope0 + f * (slope1 - slope0);
     return 0.5f * (e[0] + e[1]) + f * (slope0 + 0.5f * f * (slope1 - slope0));
 }

@@ -1,5 +1,6 @@
 #include "smooth/verifier.h"
 
+#include "base/assert.h"
 #include "smooth/single.h"
 
 #include <stddef.h>
@@ -71,6 +72,7 @@ void takt_verifier_need(const struct window *w, const struct route *r, unsigned 
 {
     float square[2] = {0.0f, 0.0f};
 
+    TAKT_ASSERT(piece + 3 < w->count);
     for (unsigned g = 0; g < r->slots.groups; g++) {
         need_of_group(w, r, g, piece, need, square);
     }
@@ -89,6 +91,7 @@ float takt_verifier_programmed(const struct verifier_need *need, const struct ro
 /* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
 static double reached(const struct smooth_limits *limits, int axis)
 {
+    TAKT_ASSERT(limits->velocity_mm_s[axis] > 0.0 && limits->jerk_mm_s3[axis] > 0.0);
     return maths_min(limits->acceleration_mm_s2[axis],
                      maths_sqrt(limits->velocity_mm_s[axis] * limits->jerk_mm_s3[axis]));
 }
@@ -116,6 +119,7 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
     double rounding_s = limits->cycle_s;
     double most = MATHS_INFINITY;
 
+    TAKT_ASSERT(interval_s > 0.0);
     change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
@@ -132,6 +136,7 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
         change->by = maths_min(change->by, most * change->rounding_s);
     }
     change->rounded = change->by / change->rounding_s;
+    TAKT_ASSERT(change->by > 0.0 && change->rounding_s > 0.0);
 }
 
 /*
@@ -175,6 +180,7 @@ void takt_verifier_rate(const struct verifier_need *need, const struct route *r,
     for (unsigned i = 0; i < r->slots.count; i++) {
         rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
     }
+    TAKT_ASSERT(rate->most >= 0.0f && rate->most <= RATE_MAX);
     rate->programmed = takt_verifier_programmed(need, r, element);
 }
 
@@ -199,6 +205,7 @@ float takt_verifier_change_on(const struct verifier_need *need, const struct rou
     float by = (float)change->by;
     float most = CHANGE_MOST * by;
 
+    TAKT_ASSERT(rate >= 0.0f);
     for (unsigned i = 0; i < r->slots.count; i++) {
         most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
     }
@@ -372,6 +379,7 @@ static float beyond_of(const struct window *w, const struct route *r, unsigned p
     struct route_closest closest;
     float weight[4];
 
+    TAKT_ASSERT(place <= look.places);
     takt_window_weights((float)place / (float)look.places, weight);
     find_closest(w, r, piece, weight, &closest);
     return closest.distance_mm - look.within_mm;
@@ -400,6 +408,7 @@ static struct pace fastest(const struct route *r, const struct order *order,
     struct pace most = {.element = order->element, .rate = -1.0f};
     uint32_t e = order->element;
 
+    TAKT_ASSERT(order->count > 0);
     for (unsigned i = 0; i < order->count; i++) {
         const struct order_span *span = &order->span[i];
 
@@ -422,6 +431,7 @@ static struct pace slowest(const struct route *r, const struct order *before,
     uint32_t e = takt_route_find(r, before->span[0].first_mm, before->element);
     struct pace least = {.element = e, .rate = takt_verifier_programmed(need, r, e)};
 
+    TAKT_ASSERT(before->count > 0 && after->count > 0);
     while (++e < r->count && route_element(r, e)->start_mm < end_mm) {
         const float rate = takt_verifier_programmed(need, r, e);
 
@@ -509,6 +519,7 @@ static bool is_end(const struct window *w, unsigned piece)
 void takt_verifier_order(struct window *w, const struct route *r, unsigned count,
                          struct order *order)
 {
+    TAKT_ASSERT(count + 3 <= w->count);
     for (unsigned i = 0; i < count; i++) {
         (void)follow_piece(w, r, i, order);
     }
@@ -519,6 +530,7 @@ void takt_verifier_pieces(struct window *w, const struct route *r, unsigned coun
 {
     struct order o = *order;
 
+    TAKT_ASSERT(count + 3 <= w->count);
     v->good = 0;
     v->whole[0] = 0;
     v->beyond_mm = 0.0f;

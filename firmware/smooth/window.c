@@ -1,9 +1,9 @@
 #include "smooth/window.h"
 
+#include "base/assert.h"
 #include "smooth/nominal.h"
 #include "smooth/single.h"
 
-#include <assert.h>
 #include <string.h>
 
 /*
@@ -31,6 +31,7 @@ void takt_window_weights(float f, float weight[4])
 {
     const float g = 1.0f - f;
 
+    TAKT_ASSERT(f >= 0.0f && f <= 1.0f);
     weight[0] = g * g * g * (1.0f / 6.0f);
     weight[1] = 2.0f / 3.0f - f * f * (1.0f - 0.5f * f);
     weight[2] = 2.0f / 3.0f - g * g * (1.0f - 0.5f * g);
@@ -42,6 +43,7 @@ static double unit_for(double length_mm)
 {
     double unit = 1.0;
 
+    TAKT_ASSERT(length_mm > 0.0);
     while (unit * UNITS > length_mm) {
         unit *= 0.5;
     }
@@ -53,6 +55,7 @@ static double unit_for(double length_mm)
 
 void takt_window_init(struct window *w, const struct route *r, double interval_s)
 {
+    TAKT_ASSERT(interval_s > 0.0 && r->slots.groups >= 1 && r->slots.groups <= SMOOTH_GROUPS_MAX);
     w->count = 0;
     w->at_end = false;
     w->capacity = window_capacity(r);
@@ -89,6 +92,7 @@ void takt_window_place(const struct window *w, const struct route *r, const stru
 void takt_window_set(struct window *w, const struct route *r, unsigned i,
                      const struct window_spot *s)
 {
+    TAKT_ASSERT(i < w->capacity);
     for (unsigned g = 0; g < r->slots.groups; g++) {
         w->x[g * w->capacity + i] = s->group[g];
     }
@@ -97,6 +101,7 @@ void takt_window_set(struct window *w, const struct route *r, unsigned i,
 bool takt_window_is_at(const struct window *w, const struct route *r, unsigned i,
                        const struct window_spot *s)
 {
+    TAKT_ASSERT(i < w->count);
     for (unsigned k = 0; k < r->slots.count; k++) {
         const int32_t off = s->at[k] - window_x(w, k, i);
 
@@ -120,6 +125,7 @@ static void append(struct window *w, const struct route *r, double at_mm)
     struct window_spot spot;
     double p[AXIS_COUNT];
 
+    TAKT_ASSERT(w->count < w->capacity && (i == 0 || at_mm >= w->at_mm[i - 1]));
     w->at_mm[i] = at_mm;
     w->element[i] = i == 0 ? r->first : w->element[i - 1];
     takt_route_point(r, at_mm, &w->element[i], p);
@@ -161,6 +167,7 @@ void takt_window_rest(struct window *w, const struct route *r, const struct orde
     const uint32_t element = found < w->element[1] ? found : w->element[1];
     double p[3][AXIS_COUNT];
 
+    TAKT_ASSERT(w->count >= SMOOTH_FIXED && order->count > 0);
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
         takt_window_sample(w, r, i, p[i]);
     }
@@ -212,6 +219,7 @@ static double next_place(const struct window *w, const struct route *r)
     float low = -1.0f;
     float high = 1.0f;
 
+    TAKT_ASSERT(w->count >= SMOOTH_FIXED);
     g.acceleration = changed(&g, along, d, 0.0f);
     if (can_go(r, at[0], &g, changed(&g, along, d, high), d)) {
         low = high;
@@ -262,7 +270,7 @@ static void move_origin(struct window *w, const struct route *r)
 
 void takt_window_drop(struct window *w, const struct route *r, unsigned count)
 {
-    assert(count <= w->count);
+    TAKT_ASSERT(count <= w->count);
     if (count == 0) {
         return;
     }
@@ -313,6 +321,7 @@ void takt_window_reach(const struct window *w, unsigned i, double *from_mm, doub
 {
     const double reach = maths_max(w->reach_min_mm, REACH * (w->at_mm[i + 1] - w->at_mm[i - 1]));
 
+    TAKT_ASSERT(i >= 1 && i + 1 < w->count);
     *from_mm = w->at_mm[i] - reach;
     *to_mm = w->at_mm[i] + reach;
 }

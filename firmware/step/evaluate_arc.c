@@ -14,6 +14,7 @@
  */
 #include "step/evaluate_arc.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -44,6 +45,7 @@ static double angle_in_quadrant(unsigned quadrant, const int64_t p[2])
 {
     const unsigned g = quadrants[quadrant].grows;
 
+    TAKT_ASSERT(quadrant < 4);
     return takt_maths_atan2((double)evaluate_size(p[g]), (double)evaluate_size(p[1U - g]));
 }
 
@@ -121,6 +123,7 @@ static unsigned choose(const struct evaluate_arc *arc)
 
 static void enter_next_quadrant(struct evaluate_arc *arc)
 {
+    TAKT_ASSERT(arc->quadrant < 4U);
     if (arc->quadrants_left == 0U) {
         go_straight(arc);
         return;
@@ -161,6 +164,7 @@ static unsigned step_straight(struct evaluate_arc *arc, unsigned *backwards)
 {
     struct evaluate_tick tick;
 
+    TAKT_ASSERT(arc->straight);
     (void)takt_evaluate_line_next(&arc->rest, &tick);
     for (unsigned i = 0; i < 2; i++) {
         if (evaluate_has(tick.axes, i)) {
@@ -198,6 +202,7 @@ double takt_evaluate_arc_rate(const struct evaluate_arc *arc)
     const double a = (double)evaluate_size(arc->at[0]);
     const double b = (double)evaluate_size(arc->at[1]);
 
+    TAKT_ASSERT(arc->radius > 0.0);
     return (arc->form == EVALUATE_PLAIN ? a + b : maths_max(a, b)) / maths_sqrt(a * a + b * b);
 }
 

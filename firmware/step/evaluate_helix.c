@@ -10,6 +10,7 @@
  */
 #include "step/evaluate_helix.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -54,6 +55,7 @@ static double arc_steps(const struct evaluate_helix *h)
 /* Part of the way that one step of the arc makes here; that of the leading straight axis. */
 static double arc_spacing(const struct evaluate_helix *h)
 {
+    TAKT_ASSERT(h->arc.radius > 0.0 && h->arc.sweep_rad > 0.0);
     return 1.0 / arc_steps(h);
 }
 
@@ -100,6 +102,7 @@ static void step_arc(struct evaluate_helix *h, struct evaluate_tick *tick)
 
 static void step_straight(struct evaluate_helix *h, unsigned axis, struct evaluate_tick *tick)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT && h->done[axis] < h->size[axis]);
     h->done[axis]++;
     tick->axes |= (uint8_t)(1U << axis);
     tick->direction |= (uint8_t)(h->direction & 1U << axis);
@@ -171,6 +174,7 @@ static void set_due(struct evaluate_helix *h)
 void takt_evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
                                const unsigned plane[2], const int64_t delta[AXIS_COUNT])
 {
+    TAKT_ASSERT(plane[0] < AXIS_COUNT && plane[1] < AXIS_COUNT && plane[0] != plane[1]);
     memset(h, 0, sizeof(*h));
     h->form = arc->form;
     h->plane[0] = plane[0];

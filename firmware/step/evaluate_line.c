@@ -9,6 +9,7 @@
  */
 #include "step/evaluate_line.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -36,6 +37,7 @@ static unsigned step_improved(struct evaluate_line *l)
     const int64_t a_end = l->size[l->leading];
     unsigned axes = 1U << l->leading;
 
+    TAKT_ASSERT(l->leading < AXIS_COUNT && l->size[l->leading] > 0);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (i == l->leading || l->size[i] == 0) {
             continue;
@@ -67,6 +69,7 @@ static unsigned step_plain(struct evaluate_line *l)
 
 bool takt_evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick)
 {
+    TAKT_ASSERT(l->left >= 0);
     *tick = (struct evaluate_tick){0};
     if (l->left == 0) {
         return false;

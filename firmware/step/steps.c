@@ -1,8 +1,8 @@
+#include "base/assert.h"
 #include "step/steps_private.h"
 
 #include "base/maths.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define STEPS_MAX 2147483647.0
@@ -17,7 +17,7 @@ void takt_steps_init(struct steps *s, const struct steps_config *config, const s
     s->now = s->next.at = s->read = *start;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (steps_has(s, i)) {
-            assert(config->axis[i].steps_per_mm > 0.0);
+            TAKT_ASSERT(config->axis[i].steps_per_mm > 0.0);
             s->at[i] = (int64_t)takt_maths_round(start->at[i] * config->axis[i].steps_per_mm);
         }
     }
@@ -25,6 +25,7 @@ void takt_steps_init(struct steps *s, const struct steps_config *config, const s
 
 static void raise_fault(struct steps *s, enum takt_error error, unsigned axis, double value)
 {
+    TAKT_ASSERT(axis < AXIS_COUNT && error != TAKT_OK);
     if (s->fault.code == TAKT_OK) {
         takt_diagnostic_set(&s->fault, error, 0, 0, &AXIS_LETTERS[axis], 1, value);
     }
@@ -45,6 +46,7 @@ static int64_t earliest_ns(const struct steps *s, const struct evaluate_tick *ti
 
 static void count_step(struct steps *s, unsigned i, bool backwards)
 {
+    TAKT_ASSERT(i < AXIS_COUNT && s->config.axis[i].rate_max_hz > 0.0);
     s->at[i] += backwards ? -1 : 1;
     s->free_ns[i] = s->last_ns + (int64_t)takt_maths_ceil(1e9 / s->config.axis[i].rate_max_hz);
 }
@@ -102,6 +104,7 @@ static double read_mm(const struct steps *s, const struct step_port *port, unsig
 {
     int32_t steps;
 
+    TAKT_ASSERT(i < AXIS_COUNT);
     if (port->read != NULL && port->read(port->context, (enum axis)i, &steps)) {
         return (double)steps / s->config.axis[i].steps_per_mm;
     }
@@ -114,6 +117,7 @@ static void check_following(struct steps *s, unsigned i)
     const struct steps_config_axis *axis = &s->config.axis[i];
     const double lag_mm = maths_abs(s->now.at[i] - s->read.at[i]);
 
+    TAKT_ASSERT(i < AXIS_COUNT);
     if (axis->following_error_max_mm > 0.0 &&
         lag_mm > axis->following_error_max_mm + 0.5 / axis->steps_per_mm) {
         raise_fault(s, TAKT_ERROR_DRIVE_FOLLOWING, i, lag_mm);

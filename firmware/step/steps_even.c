@@ -1,4 +1,5 @@
 /* The even form: each axis steps when the way passes the middle between two of its positions. */
+#include "base/assert.h"
 #include "step/steps_private.h"
 
 #include "base/maths.h"
@@ -13,6 +14,7 @@ struct way {
 /* x(t) = at + 1/2 (or at - 1/2): t = (at +- 1/2 - from) / (to - from) */
 static void set_due(struct way *w, int64_t at)
 {
+    TAKT_ASSERT(w->due >= 0.0);
     if (at == w->end) {
         w->due = MATHS_INFINITY;
         return;

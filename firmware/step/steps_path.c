@@ -2,6 +2,7 @@
  * The forms by evaluation functions along a block's curve: which axes step is told by the lattice, when by the setpoints.
  * A tick is due at a part of the curve, and setpoints say when that part has been passed.
  */
+#include "base/assert.h"
 #include "step/steps_private.h"
 
 #include "base/maths.h"
@@ -93,6 +94,7 @@ static bool begin_arc(struct steps *s, const struct curve *c, const int64_t star
 
 static void set_line_due(struct steps_path *path)
 {
+    TAKT_ASSERT(path->made >= 0 && path->made <= path->ticks);
     path->due = path->ticks > 0 ? ((double)path->made + 0.5) / (double)path->ticks : 1.0;
 }
 

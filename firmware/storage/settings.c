@@ -1,5 +1,6 @@
 #include "storage/settings.h"
 
+#include "base/assert.h"
 #include "base/crc32.h"
 #include "machine/machine_check.h"
 #include "storage/little_words.h"
@@ -41,6 +42,7 @@ static uint8_t *begin_record(struct writer *w, uint16_t number, uint16_t axis, u
 {
     uint8_t *to = w->bytes + w->at;
 
+    TAKT_ASSERT(w->is_full || w->at <= w->room);
     if (w->is_full || w->room - w->at < RECORD_HEAD_BYTES + filled_up(size)) {
         w->is_full = true;
         return NULL;
@@ -135,6 +137,7 @@ struct reader {
 
 static bool refuse(struct reader *r, enum takt_error code, double value)
 {
+    TAKT_ASSERT(code != TAKT_OK);
     takt_diagnostic_set(r->wrong, code, 0, 0, "", 0, value);
     return false;
 }
@@ -213,6 +216,7 @@ static bool read_record(struct reader *r)
     const size_t left = r->size - r->at;
     uint32_t size;
 
+    TAKT_ASSERT(r->at <= r->size);
     r->record++;
     if (left < RECORD_HEAD_BYTES)
         return refuse(r, TAKT_ERROR_SETTINGS_SHAPE, r->record);
@@ -230,6 +234,7 @@ static bool refuse_value(struct reader *r, const struct settings_field *field, u
     char word[DIAGNOSTIC_WORD_MAX + 1];
     size_t length = 0;
 
+    TAKT_ASSERT(axis < AXIS_COUNT);
     if (field->of_axis) {
         word[length++] = AXIS_LETTERS[axis];
         word[length++] = ' ';

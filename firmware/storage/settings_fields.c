@@ -1,15 +1,15 @@
 #include "storage/settings_fields.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "classic/interpolator.h"
 #include "classic/limiter.h"
 #include "machine/machine.h"
 #include "storage/little_words.h"
 
-#include <assert.h>
 #include <string.h>
 
-static_assert(sizeof(double) == 8, "stored as IEEE-754");
+_Static_assert(sizeof(double) == 8, "stored as IEEE-754");
 
 #define DEGREE  (MATHS_PI / 180.0)
 #define PPM     1e-6
@@ -172,6 +172,7 @@ static void get_number(const struct settings_field *field, const uint8_t *at, ui
     uint64_t bits;
     uint32_t word;
 
+    TAKT_ASSERT(!is_plain(field));
     if (field->type == SETTINGS_DOUBLE) {
         memcpy(&bits, at, sizeof bits);
         little_put64(bytes, bits);
@@ -216,6 +217,7 @@ static void set_number(const struct settings_field *field, uint8_t *at, const ui
     const uint64_t bits = field->type == SETTINGS_DOUBLE ? little_get64(bytes) : 0;
     const uint32_t word = little_get32(bytes);
 
+    TAKT_ASSERT(!is_plain(field));
     if (field->type == SETTINGS_DOUBLE)
         memcpy(at, &bits, sizeof bits);
     else if (field->type == SETTINGS_U32)
@@ -245,6 +247,7 @@ static double value_at(const struct settings_field *field, const uint8_t *at)
     double value;
     uint32_t word;
 
+    TAKT_ASSERT(!is_plain(field));
     if (field->type == SETTINGS_DOUBLE) {
         memcpy(&value, at, sizeof value);
         return value;

@@ -1,15 +1,15 @@
 #include "storage/settings_tables.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "correction/grid_bound.h"
 #include "correction/grid_patch.h"
 #include "storage/little_words.h"
 
-#include <assert.h>
 #include <string.h>
 
-static_assert(sizeof(float) == 4 && sizeof(double) == 8, "stored as IEEE-754");
-static_assert(sizeof(struct axis_piece) == 8 * sizeof(float), "stored as eight numbers");
+_Static_assert(sizeof(float) == 4 && sizeof(double) == 8, "stored as IEEE-754");
+_Static_assert(sizeof(struct axis_piece) == 8 * sizeof(float), "stored as eight numbers");
 
 /* Where the parts of a volume begin. */
 #define INPUTS       16U
@@ -68,6 +68,7 @@ void takt_settings_volume_put(const struct grid *grid, uint8_t *bytes)
 {
     const size_t count = components_of(grid) * grid->size;
 
+    TAKT_ASSERT(grid->inputs >= 2 && grid->inputs <= TABLE_INPUTS_MAX);
     memset(bytes, 0, COEFFICIENTS);
     little_put32(bytes, grid->inputs);
     little_put32(bytes + 4, grid->components);

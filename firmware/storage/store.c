@@ -1,5 +1,6 @@
 #include "storage/store.h"
 
+#include "base/assert.h"
 #include "base/crc32.h"
 #include "storage/little_words.h"
 
@@ -23,6 +24,7 @@ static uint32_t crc_of(const uint8_t *bytes, size_t length)
 
 uint32_t takt_store_room(const struct store *store)
 {
+    TAKT_ASSERT(store->flash.sector_bytes > STORE_HEAD_BYTES);
     return store->flash.sector_bytes - STORE_HEAD_BYTES;
 }
 
@@ -39,6 +41,7 @@ static bool read_head(const struct store *store, unsigned sector, struct head *h
 {
     const uint8_t *at = store->flash.sector[sector];
 
+    TAKT_ASSERT(sector < 2);
     *head = (struct head){.sequence = little_get32(word_at(at, HEAD_SEQUENCE)),
                           .size = little_get32(word_at(at, HEAD_SIZE)),
                           .crc = little_get32(word_at(at, HEAD_CRC))};
@@ -94,6 +97,7 @@ static bool is_blank(const struct store *store, unsigned sector)
 {
     const uint8_t *at = store->flash.sector[sector];
 
+    TAKT_ASSERT(sector < 2);
     for (uint32_t i = 0; i < store->flash.sector_bytes; i++) {
         if (at[i] != 0xFF)
             return false;
@@ -128,6 +132,7 @@ static bool program_word(struct store *store)
     const bool good = store->flash.program(store->flash.context, other_sector(store),
                                            STORE_HEAD_BYTES + store->written, store->word, 1);
 
+    TAKT_ASSERT(store->in_word > 0 && store->written < store->coming);
     store->written += store->in_word;
     store->in_word = 0;
     return good;
@@ -136,6 +141,7 @@ static bool program_word(struct store *store)
 /* The last word is filled up as erased bytes are. */
 static bool add_byte(struct store *store, uint8_t byte)
 {
+    TAKT_ASSERT(store->in_word < sizeof store->word);
     if (store->in_word == 0)
         memset(store->word, 0xFF, sizeof store->word);
     store->word[store->in_word++] = byte;

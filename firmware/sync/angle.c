@@ -1,5 +1,6 @@
 #include "sync/angle.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -14,6 +15,7 @@ void takt_angle_tune(struct angle *a, double bandwidth_rad_cycle)
     const double b = takt_maths_exp(-bandwidth_rad_cycle);
     const double c = 1.0 - b;
 
+    TAKT_ASSERT(bandwidth_rad_cycle > 0.0);
     a->gain_angle = 1.0 - b * b * b;
     a->gain_speed = 1.5 * c * c * (1.0 + b);
     a->gain_acceleration = c * c * c;
@@ -26,6 +28,7 @@ void takt_angle_init(struct angle *a)
 
 struct angle_ahead takt_angle_look_ahead(const struct angle *a, double cycles)
 {
+    TAKT_ASSERT(cycles >= 0.0);
     return (struct angle_ahead){
         .rev = a->rev + cycles * (a->speed + 0.5 * cycles * a->acceleration),
         .speed = a->speed + cycles * a->acceleration,

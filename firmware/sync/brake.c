@@ -8,6 +8,7 @@
  */
 #include "sync/brake.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -39,6 +40,7 @@ static void plan(struct brake *b, const struct brake_state *s, const struct brak
     const double d = maths_max(-a, maths_min(peak, limits->acceleration_mm_s2));
     const double kept = d > 0.0 ? (v + 0.5 * a * a / jerk - d * d / jerk) / d : 0.0;
 
+    TAKT_ASSERT(jerk > 0.0 && limits->acceleration_mm_s2 > 0.0);
     memset(b, 0, sizeof(*b));
     b->from = *s;
     b->jerk_mm_s3[1] = -sense * jerk;
@@ -65,6 +67,7 @@ static double turning_position(const struct brake_state *s, double jerk)
     const double root = maths_sqrt(maths_max(0.0, a * a - 2.0 * jerk * s->v_mm_s));
     const double time_s = 2.0 * s->v_mm_s / (root - a);
 
+    TAKT_ASSERT(s->v_mm_s > 0.0 && jerk > 0.0);
     return takt_brake_advance(s, jerk, time_s).x_mm;
 }
 
@@ -93,6 +96,7 @@ void takt_brake_begin_at(struct brake *b, const struct brake_state *s,
     double low_s = 0.0;
     double high_s = time_s;
 
+    TAKT_ASSERT(time_s > 0.0);
     for (int i = 0; i < HALVINGS; i++) {
         const double middle_s = 0.5 * (low_s + high_s);
         const struct brake_state later = takt_brake_advance(s, jerk_mm_s3, middle_s);
@@ -116,6 +120,7 @@ bool takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s)
 {
     double left_s = b->passed_s + cycle_s;
 
+    TAKT_ASSERT(b->phase <= BRAKE_PHASES);
     while (b->phase < BRAKE_PHASES && left_s >= b->time_s[b->phase]) {
         left_s -= b->time_s[b->phase];
         b->from = takt_brake_advance(&b->from, b->jerk_mm_s3[b->phase], b->time_s[b->phase]);

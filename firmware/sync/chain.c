@@ -1,5 +1,7 @@
 #include "sync/chain.h"
 
+#include "base/assert.h"
+
 /* Blocks taken in at once. */
 #define EXTEND_MAX 16
 
@@ -17,6 +19,7 @@ static struct brake_limits limits_of(const struct path_block *b)
 
 void takt_chain_begin(struct chain *c, struct path *path)
 {
+    TAKT_ASSERT(path->first != path->closed);
     *c = (struct chain){
         .path = path, .last = path->first, .end_mm = takt_path_length(path, path->first)};
     c->limits = limits_of(path_at(path, path->first));
@@ -63,10 +66,12 @@ bool takt_chain_next_leg(const struct chain *c, struct chain_leg *leg)
     if (leg->block == c->last) {
         return false;
     }
+    TAKT_ASSERT(leg->pitch_mm != 0.0);
     leg->zero_rev += (leg->end_mm - leg->start_mm) / leg->pitch_mm;
     leg->block++;
     leg->start_mm = leg->end_mm;
     leg->end_mm += takt_path_length(c->path, leg->block);
+    TAKT_ASSERT(leg->end_mm > leg->start_mm);
     leg->pitch_mm = takt_path_feed_rev(c->path, leg->block);
     return true;
 }

@@ -15,6 +15,7 @@
  */
 #include "sync/follower.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -26,6 +27,7 @@
 
 void takt_follower_init(struct follower *f, double cycle_s)
 {
+    TAKT_ASSERT(cycle_s > 0.0);
     memset(f, 0, sizeof(*f));
     f->cycle_s = cycle_s;
 }
@@ -36,6 +38,8 @@ void takt_follower_tune(struct follower *f, double bandwidth_rad_cycle)
     const double a = c * (3.0 + c * (c / 3.0 - 1.5));
     const double va = c * c * (3.0 - c);
 
+    TAKT_ASSERT(bandwidth_rad_cycle > 0.0);
+    TAKT_ASSERT(a > 0.0 && va > 0.0);
     f->gain_a = a / f->cycle_s;
     f->gain_v = va / a / f->cycle_s;
     f->gain_x = c * c * c / va / f->cycle_s;
@@ -43,6 +47,8 @@ void takt_follower_tune(struct follower *f, double bandwidth_rad_cycle)
 
 void takt_follower_start(struct follower *f, const struct brake_limits *limits)
 {
+    TAKT_ASSERT(limits->velocity_mm_s > 0.0 && limits->acceleration_mm_s2 > 0.0 &&
+                limits->jerk_mm_s3 > 0.0);
     memset(&f->at, 0, sizeof(f->at));
     f->limits = *limits;
     f->braking = false;
@@ -110,6 +116,7 @@ static void step_brake(struct follower *f)
 void takt_follower_step(struct follower *f, const struct follower_target *target,
                         const struct follower_end *end)
 {
+    TAKT_ASSERT(end->sense == 1.0 || end->sense == -1.0);
     if (f->braking) {
         step_brake(f);
         return;

@@ -1,5 +1,6 @@
 #include "sync/lead_in.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* Peaks of the first and second derivative of s(u) = 10 u^3 - 15 u^4 + 6 u^5. */
@@ -20,6 +21,7 @@ double takt_lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_
     const double time_s = maths_max(PEAK_FIRST * v / limits->acceleration_mm_s2,
                                     maths_sqrt(PEAK_SECOND * v / limits->jerk_mm_s3));
 
+    TAKT_ASSERT(speed_rev_s > 0.0 && cycle_s > 0.0);
     return LEAD_IN_ROOM * speed_rev_s * maths_max(time_s, CYCLES_MIN * cycle_s);
 }
 
@@ -33,6 +35,7 @@ struct lead_in_place takt_lead_in_at(const struct lead_in *l, double rev)
 {
     const double u = (rev - l->zero_rev) / l->way_rev + 0.5;
 
+    TAKT_ASSERT(l->way_rev > 0.0);
     if (u <= 0.0) {
         return (struct lead_in_place){0};
     }

@@ -1,5 +1,6 @@
 #include "sync/spindle_sync.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "motion/handover.h"
 
@@ -32,6 +33,7 @@ static void tune(struct spindle_sync *l, double bandwidth_rad_s)
 
 void takt_spindle_sync_init(struct spindle_sync *l, const struct spindle_sync_config *config)
 {
+    TAKT_ASSERT(config->cycle_s > 0.0);
     memset(l, 0, sizeof(*l));
     l->config = *config;
     takt_angle_init(&l->angle);
@@ -79,6 +81,7 @@ static void fail(struct spindle_sync *l, enum takt_error code, double value, dou
 {
     const struct block *b = path_first(l->chain.path);
 
+    TAKT_ASSERT(code != TAKT_OK);
     takt_diagnostic_set(&l->alarm, code, b->move.line, 0, "", 0, value);
     takt_diagnostic_set_limit(&l->alarm, limit);
     takt_follower_brake(&l->follower);
@@ -95,6 +98,7 @@ static double bandwidth_of(const struct spindle_sync *l)
 {
     const double count_mm = l->at.pitch_mm / l->config.counts;
 
+    TAKT_ASSERT(l->config.counts > 0.0);
     return maths_min(ANGLE_BANDWIDTH_RAD_S,
                      takt_maths_cbrt(COUNT_PART * l->chain.limits.jerk_mm_s3 / count_mm));
 }

@@ -1,5 +1,6 @@
 #include "vfd/vfd.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 #include <string.h>
@@ -16,6 +17,7 @@
 
 void takt_vfd_init(struct vfd *vfd, const struct vfd_config *config)
 {
+    TAKT_ASSERT(config->cycle_us > 0 && config->pole_pairs > 0);
     memset(vfd, 0, sizeof *vfd);
     vfd->config = *config;
 }

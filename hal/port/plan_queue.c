@@ -1,6 +1,5 @@
 #include "port/plan_queue.h"
 
-#include <assert.h>
 #include <string.h>
 
 void takt_plan_queue_init(struct plan_queue *q, const struct service *service)
@@ -86,7 +85,7 @@ static void why(void *context, char *text)
 {
     const struct plan_queue *q = context;
 
-    static_assert(DIAGNOSTIC_TEXT_MAX <= PANEL_ALARM_TEXT_MAX, "there is room for it");
+    _Static_assert(DIAGNOSTIC_TEXT_MAX <= PANEL_ALARM_TEXT_MAX, "there is room for it");
     if (q->why.code != TAKT_OK)
         (void)takt_diagnostic_text(&q->why, text);
 }

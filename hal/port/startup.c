@@ -2,7 +2,6 @@
 
 #include "port/cortex_m.h"
 
-#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -22,20 +21,6 @@ WEAK void takt_port_begin(void)
 
 WEAK void takt_port_fault(void)
 {
-    for (;;) {
-    }
-}
-
-/* What assert calls, in newlib and in picolibc. */
-WEAK _Noreturn void __assert_func(const char *file, int line, const char *function,
-                                  const char *text)
-{
-    (void)file;
-    (void)line;
-    (void)function;
-    (void)text;
-    cortex_disable_all();
-    takt_port_fault();
     for (;;) {
     }
 }

@@ -15,7 +15,6 @@
 #include "hal/inputs.h"
 #include "motion/cycle_record.h"
 
-#include <assert.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -90,7 +89,7 @@ struct remote_outputs {
     struct classical_frame frame[REMOTE_FRAMES_MAX];
 };
 
-static_assert(sizeof(struct inputs) == 88, "as on every side");
-static_assert(sizeof(struct cycle_record) == 200, "as on every side");
+_Static_assert(sizeof(struct inputs) == 88, "as on every side");
+_Static_assert(sizeof(struct cycle_record) == 200, "as on every side");
 
 #endif

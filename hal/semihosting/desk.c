@@ -5,6 +5,7 @@
  * The words it is started with name its files: setup, program, the two ends of the talk, and the program as planned ahead,
  * if it is to be replayed.
  */
+#include "base/assert.h"
 #include "correction/table_store.h"
 #include "correction/tables.h"
 #include "port/image.h"
@@ -13,7 +14,6 @@
 #include "semihosting/files.h"
 #include "semihosting/semihosting.h"
 
-#include <assert.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -48,12 +48,11 @@ struct desk {
 
 static struct desk desk;
 
-/* What assert calls: the run ends, and with it the talk. */
-_Noreturn void __assert_func(const char *file, int line, const char *function, const char *text)
+/* The run ends, and with it the talk. */
+void takt_assert_failed(const char *file, int line, const char *text)
 {
     (void)file;
     (void)line;
-    (void)function;
     (void)text;
     takt_semihosting_exit(3);
 }

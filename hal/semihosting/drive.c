@@ -4,6 +4,7 @@
  *
  * The words it is started with name its files: the two ends of the talk.
  */
+#include "base/assert.h"
 #include "port/image.h"
 #include "semihosting/files.h"
 #include "twin/twin.h"
@@ -19,12 +20,11 @@ static struct node {
     char eds[TWIN_EDS_MAX];
 } node;
 
-/* What assert calls: the drive ends, and with it the talk. */
-_Noreturn void __assert_func(const char *file, int line, const char *function, const char *text)
+/* The drive ends, and with it the talk. */
+void takt_assert_failed(const char *file, int line, const char *text)
 {
     (void)file;
     (void)line;
-    (void)function;
     (void)text;
     takt_semihosting_exit(3);
 }

@@ -27,11 +27,20 @@ bool takt_crash_take(struct crash_memory *memory, struct crash_record *record)
     return any;
 }
 
+void crash_set_file(struct crash_record *record, const char *name)
+{
+    const size_t length = strlen(name);
+    const size_t kept = length < CRASH_FILE_SIZE ? length : CRASH_FILE_SIZE - 1;
+
+    memset(record->file, 0, sizeof record->file);
+    memcpy(record->file, name + (length - kept), kept);
+}
+
 const char *takt_crash_name(uint32_t cause)
 {
     static const char *const names[CRASH_CAUSES] = {
         "a hard fault",  "a memory fault",          "a bus fault",
-        "a usage fault", "the crystal has stopped", "a broken assertion",
+        "a usage fault", "the crystal has stopped", "a broken invariant",
     };
 
     return cause < CRASH_CAUSES ? names[cause] : "an unknown cause";

@@ -1,10 +1,12 @@
 #include "stm32/exceptions.h"
 
+#include "base/assert.h"
 #include "chip/peripherals.h"
 #include "port/cortex_m.h"
 #include "port/startup.h"
 
-#include <assert.h>
+/* They stay in their registers. */
+#define UNUSED __attribute__((unused))
 
 /* What the core has put on the stack (ARMv7-M, B1.5.6). */
 struct frame {
@@ -96,10 +98,18 @@ void takt_port_nmi(void)
     takt_exceptions_crash(CRASH_CRYSTAL, 0, 0);
 }
 
-/* What assert calls, in newlib and in picolibc. */
-_Noreturn void __assert_func(const char *file, int line, const char *function, const char *text)
+_Noreturn void exceptions_invariant(const char *file, int line);
+void exceptions_invariant(const char *file, int line)
 {
-    (void)function;
-    (void)text;
-    takt_exceptions_crash(CRASH_ASSERTION, (uint32_t)line, (uint32_t)(uintptr_t)file);
+    struct crash_record record = {.cause = CRASH_INVARIANT, .address = (uint32_t)line};
+
+    crash_set_file(&record, file);
+    start_anew(&record);
+}
+
+/* Nobody comes back: the whole stack is free again. So a broken invariant needs none where it is deepest. */
+__attribute__((naked)) void takt_assert_failed(const char *file UNUSED, int line UNUSED,
+                                               const char *text UNUSED)
+{
+    __asm volatile("ldr r3, =image_stack_top\n\tmov sp, r3\n\tb exceptions_invariant");
 }

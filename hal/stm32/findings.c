@@ -2,6 +2,8 @@
 
 #include "stm32/step_slots.h"
 
+#include <string.h>
+
 /* Longest cycle of step drives. */
 #define STEP_CYCLE_US (STEP_SLOTS_MAX * STEP_SLOT_NS / 1000U)
 
@@ -16,6 +18,11 @@ static bool find_crash(const struct findings *found, struct diagnostic *problem)
 {
     if (!found->has_crashed)
         return false;
+    if (found->crash.cause == CRASH_INVARIANT) {
+        takt_diagnostic_set(problem, TAKT_ERROR_INVARIANT_BROKEN, 0, 0, found->crash.file,
+                            strlen(found->crash.file), (double)found->crash.address);
+        return true;
+    }
     (void)is_problem(problem, TAKT_ERROR_CRASHED, (double)found->crash.address);
     problem->meaning = takt_crash_name(found->crash.cause);
     return true;

@@ -28,10 +28,9 @@
 #include "storage/settings.h"
 #include "storage/store.h"
 
-#include <assert.h>
 #include <string.h>
 
-static_assert(BOARD_PRIORITY_CYCLE == CORTEX_PRIORITY_CYCLE, "lock() holds the cycle back");
+_Static_assert(BOARD_PRIORITY_CYCLE == CORTEX_PRIORITY_CYCLE, "lock() holds the cycle back");
 
 #define TOOLS_MAX 32U
 
@@ -323,7 +322,7 @@ static bool drives_are_off(void *context)
 /* Where a plan would wait for its start: new settings count from the next one on, and no plan lasts until then. */
 static struct correction_tables *borrow_tables(void *context)
 {
-    static_assert(sizeof(struct correction_tables) <= PLAN_QUEUE_MAX, "there is room for them");
+    _Static_assert(sizeof(struct correction_tables) <= PLAN_QUEUE_MAX, "there is room for them");
     (void)context;
     return takt_plan_queue_lend(&board_core.plan);
 }

@@ -24,9 +24,6 @@ endif()
 set(TAKT_MACHINE_FLAGS "-mcpu=${TAKT_CPU} -mthumb -mfloat-abi=hard -mfpu=${TAKT_FPU}")
 # Every function and object in a section of its own, so that the linker leaves out what no image uses.
 set(CMAKE_C_FLAGS_INIT "${TAKT_MACHINE_FLAGS} -ffunction-sections -fdata-sections -fstack-usage")
-# An assertion that fails names its file: within the project.
-get_filename_component(TAKT_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
-string(APPEND CMAKE_C_FLAGS_INIT " -fmacro-prefix-map=${TAKT_ROOT}/=")
 set(CMAKE_ASM_FLAGS_INIT "${TAKT_MACHINE_FLAGS}")
 
 # picolibc is a little smaller than newlib's nano (hal/port/README.md has the figures).

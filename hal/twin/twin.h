@@ -16,7 +16,6 @@
 #include "hal/motor.h"
 #include "servo/servo.h"
 
-#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -90,9 +89,9 @@ struct twin_reply {
     struct motor_sense sense;
 };
 
-static_assert(sizeof(struct twin_order) == 40, "as on every side");
-static_assert(sizeof(struct twin_ask) == 40, "as on every side");
-static_assert(sizeof(struct motor_sense) == 96, "as on every side");
-static_assert(sizeof(struct twin_reply) == 112, "as on every side");
+_Static_assert(sizeof(struct twin_order) == 40, "as on every side");
+_Static_assert(sizeof(struct twin_ask) == 40, "as on every side");
+_Static_assert(sizeof(struct motor_sense) == 96, "as on every side");
+_Static_assert(sizeof(struct twin_reply) == 112, "as on every side");
 
 #endif

@@ -82,6 +82,18 @@ static void test_after_a_crash_somebody_has_to_look(void)
     expect(TAKT_ERROR_CRASHED, "the controller had to stop and restart: a bus fault at 08001234");
 }
 
+static void test_a_broken_invariant_is_told_by_its_file_and_line(void)
+{
+    found.has_crashed = true;
+    found.crash = (struct crash_record){.cause = CRASH_INVARIANT, .address = 105};
+    crash_set_file(&found.crash, "firmware/plan/ring.c");
+    expect(TAKT_ERROR_INVARIANT_BROKEN, "the controller had to stop and restart: invariant broken "
+                                        "in firmware/plan/ring.c, line 105");
+    crash_set_file(&found.crash, "firmware/controller/controller_background.c");
+    expect(TAKT_ERROR_INVARIANT_BROKEN, "the controller had to stop and restart: invariant broken "
+                                        "in troller/controller_background.c, line 105");
+}
+
 static void test_without_settings_nothing_moves(void)
 {
     takt_diagnostic_set(&found.settings, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
@@ -114,6 +126,7 @@ int main(void)
     RUN_TEST(test_every_way_can_is_missing_is_told);
     RUN_TEST(test_a_cycle_without_whole_slots_is_a_problem_for_steps);
     RUN_TEST(test_after_a_crash_somebody_has_to_look);
+    RUN_TEST(test_a_broken_invariant_is_told_by_its_file_and_line);
     RUN_TEST(test_without_settings_nothing_moves);
     RUN_TEST(test_all_problems_are_told_the_gravest_first);
     return UNITY_END();

@@ -71,6 +71,7 @@ class Function:
         self.frame = 0
         self.calls = set()
         self.indirect = False
+        self.begins_anew = False
 
 
 def registers(text):
@@ -117,6 +118,10 @@ def read_functions(elf):
 def read_instruction(function, name, names, operation, text):
     function.frame += frame_bytes(operation, text)
     target = TARGET.search(text)
+    if operation == "mov" and text.startswith("sp, r"):
+        function.begins_anew = True
+    if function.begins_anew:
+        return  # what it calls has the whole stack again, and never comes back
     if operation in ("bl", "blx", "b", "b.w", "b.n") and target:
         callee = names.get(int(target.group(1), 16), target.group(2))
         if callee != name:

@@ -37,7 +37,7 @@ def sector(settings):
 class Board:
     """An image at work; its log is a file, its panel, if it has one, a serial line."""
 
-    def __init__(self, path, flash=None, panel=False, log="log.txt"):
+    def __init__(self, path, flash=None, panel=False, log="log.txt", debugger=None):
         target.need_qemu()
         self.log_path = log
         self.line = serial_pair.Pair() if panel else None
@@ -45,6 +45,8 @@ class Board:
                    "-chardev", f"file,id=log,path={log}", "-serial", "chardev:log"]
         if panel:
             command += ["-chardev", f"serial,id=panel,path={self.line.paths[0]}", "-serial", "chardev:panel"]
+        if debugger is not None:
+            command += ["-chardev", f"socket,id=debugger,path={debugger},server=on,wait=off", "-gdb", "chardev:debugger"]
         if flash is not None:
             with open("flash.bin", "wb") as file:
                 file.write(flash)

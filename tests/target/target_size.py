@@ -57,7 +57,7 @@ def check_sizes(elf, memory_max):
 def check_names(names):
     wrong = sorted(name for name in names if FORBIDDEN.match(name))
     t.check(wrong == [], "no heap, no libm, no stdio", wrong)
-    t.check("__assert_func" in names, "assertions are there: a broken one stops the image")
+    t.check("takt_assert_failed" in names, "assertions are there: a broken one stops the image")
 
 
 def usage_files(elf, folder):

@@ -21,7 +21,8 @@ void setUp(void)
     const struct point start = {{0}};
 
     takt_path_init(&path, &limits, &start);
-    request = (struct ceiling_request){.span = UINT64_MAX, .feed_ratio = 1.0, .rapid_ratio = 1.0};
+    request = (struct ceiling_request){
+        .span = UINT64_MAX, .cycles = 1, .feed_ratio = 1.0, .rapid_ratio = 1.0};
 }
 
 void tearDown(void)
@@ -162,7 +163,7 @@ static void test_no_override_changes_the_acceleration_anywhere(void)
     build();
     path.ring.block[1].a_mm_s2 = 900.0F;
     for (int i = 1; i <= 12; i++) {
-        request.feed_ratio = 0.1 * i;
+        request.feed_ratio = i / 10.0;
         takt_ceiling_build(&ceiling, &path, &request);
         uint32_t k = 0;
 
