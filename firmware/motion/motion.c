@@ -103,6 +103,12 @@ static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_
     return path_mm(c->origin, reference) < RENEW_PART * c->end_mm[c->count - 1];
 }
 
+/* The path that was asked about has been dropped since: blocks of another one may lie in its ring by now. */
+static bool is_dropped(const struct motion *m, uint32_t restarts)
+{
+    return restarts != handoff_get_count(&m->restarts);
+}
+
 /* Would a new ceiling be the one that is there? */
 static bool is_unchanged(const struct motion *m, const struct ceiling_request *request)
 {
@@ -121,7 +127,8 @@ void takt_motion_build(struct motion *m)
 
     TAKT_ASSERT(m->wanted && !m->built);
     m->path->spare = PATH_NO_SPARE;
-    if (is_unchanged(m, &request)) {
+    m->made_holds = m->made_holds && !is_dropped(m, restarts);
+    if (is_dropped(m, restarts) || is_unchanged(m, &request)) {
         handoff_set_flag(&m->wanted, false);
         return;
     }
@@ -516,7 +523,7 @@ static bool end_path(struct motion *m)
     m->rested = 0;
     m->done = false;
     m->ending = false;
-    m->restarts++;
+    handoff_set_count(&m->restarts, m->restarts + 1);
     TAKT_ASSERT(m->path->first == m->path->pushed);
     return true;
 }

@@ -31,10 +31,13 @@ static void init_smooth(struct path *p)
     takt_smooth_init(&p->smooth, &limits);
 }
 
-/* Is it one of those that may still be read? The last ones that have been passed are (ring.h). */
-static bool is_kept(const struct path *p, uint32_t index)
+/*
+ * Has it been appended? That alone is asked of an index here: the cycle may pass blocks, or drop the path, while the background
+ * reads them, which is safe as long as it appends none meanwhile.
+ */
+static bool is_pushed(const struct path *p, uint32_t index)
 {
-    return (int32_t)(index + RECORD_BEFORE - p->kept) >= 0 && (int32_t)(p->pushed - index) > 0;
+    return (int32_t)(p->pushed - index) > 0;
 }
 
 void takt_path_init(struct path *p, const struct plan_limits *limits, const struct point *start)
@@ -92,31 +95,31 @@ static struct block *edge(struct path *p, uint32_t index)
 
 double takt_path_length(const struct path *p, uint32_t index)
 {
-    TAKT_ASSERT(is_kept(p, index));
+    TAKT_ASSERT(is_pushed(p, index));
     return path_mm(path_at(p, index)->start, path_end(p, index));
 }
 
 enum move_kind takt_path_kind(const struct path *p, uint32_t index)
 {
-    TAKT_ASSERT(is_kept(p, index));
+    TAKT_ASSERT(is_pushed(p, index));
     return takt_record_kind(ring_record(&p->ring, index));
 }
 
 double takt_path_feed_rev(const struct path *p, uint32_t index)
 {
-    TAKT_ASSERT(is_kept(p, index));
+    TAKT_ASSERT(is_pushed(p, index));
     return takt_record_feed_rev(ring_record(&p->ring, index));
 }
 
 void takt_path_read_move(const struct path *p, uint32_t index, struct move *move)
 {
-    TAKT_ASSERT(is_kept(p, index));
+    TAKT_ASSERT(is_pushed(p, index));
     takt_ring_read_move(&p->ring, index, move);
 }
 
 void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known)
 {
-    TAKT_ASSERT(is_kept(p, index) && cycles <= takt_ramp_profile_cycles_max(p->limits.profile));
+    TAKT_ASSERT(is_pushed(p, index) && cycles <= takt_ramp_profile_cycles_max(p->limits.profile));
     takt_ring_promise(&p->ring, index, cycles, known);
 }
 

@@ -234,13 +234,19 @@ static bool needs_other_interval(struct smooth *s)
            change.rounding_s > s->change.rounding_s;
 }
 
+/* Is the route still not known far enough for the place that was tried last? One that has been passed says nothing. */
+static bool is_tried_in_vain(const struct smooth *s)
+{
+    return !is_all_known(s) && s->tried >= s->route.first &&
+           feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route));
+}
+
 /* Fills the window; false when more of the route must be known first. */
 static bool fill(struct smooth *s)
 {
     struct window *w = &s->window;
 
-    if (s->route.count == 0 ||
-        (!is_all_known(s) && feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route)))) {
+    if (s->route.count == 0 || is_tried_in_vain(s)) {
         return false;
     }
     if (w->count == 0) {

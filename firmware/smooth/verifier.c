@@ -401,14 +401,13 @@ struct pace {
     float rate;
 };
 
-/* The motion whose feed is the highest, among those that the curve can be on here. */
+/* The motion whose feed is the highest, among those that the curve can be on here; no feed where there is none. */
 static struct pace fastest(const struct route *r, const struct order *order,
                            const struct verifier_need *need)
 {
     struct pace most = {.element = order->element, .rate = -1.0f};
     uint32_t e = order->element;
 
-    TAKT_ASSERT(order->count > 0);
     for (unsigned i = 0; i < order->count; i++) {
         const struct order_span *span = &order->span[i];
 

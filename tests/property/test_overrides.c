@@ -195,11 +195,13 @@ static bool check_program(unsigned seed)
 static void test_whatever_the_operator_does_the_limits_hold(void)
 {
     unsigned failed = 0;
+    unsigned long long blocks = 0;
 
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
         failed += check_program(seed) ? 0 : 1;
+        blocks += run.moves;
     }
-    printf("%u programs, %u failed\n", programs, failed);
+    printf("%u programs of %llu blocks, %u failed\n", programs, blocks, failed);
     TEST_ASSERT_EQUAL_UINT(0, failed);
 }
 
