@@ -11,69 +11,6 @@
 
 #include <string.h>
 
-static double cycle_s(const struct machine *machine)
-{
-    TAKT_ASSERT(machine->cycle_us > 0);
-    return 1e-6 * (double)machine->cycle_us;
-}
-
-void takt_controller_plan_limits(const struct machine *machine, struct plan_limits *limits)
-{
-    memset(limits, 0, sizeof(*limits));
-    limits->axes = takt_machine_axes(machine);
-    limits->cycle_s = cycle_s(machine);
-    limits->profile = (enum ramp_profile)machine->profile;
-    limits->landing = (enum landing)machine->landing;
-    limits->chord_error_max_mm = 1.0 / machine->resolution_per_mm;
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        limits->velocity_mm_s[i] = machine->axis[i].max_velocity_mm_s;
-        limits->acceleration_mm_s2[i] = machine->axis[i].max_acceleration_mm_s2;
-        limits->jerk_mm_s3[i] = machine->axis[i].max_jerk_mm_s3;
-    }
-}
-
-void takt_controller_reserve_correction(struct correction *correction,
-                                        const struct machine *machine, struct plan_limits *limits)
-{
-    struct motion_bound most;
-    struct need need;
-
-    takt_machine_motion_bound(machine, &most);
-    takt_correction_reserve(correction, &most, &need);
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        limits->velocity_mm_s[i] -= need.velocity_mm_s[i];
-        limits->acceleration_mm_s2[i] -= need.acceleration_mm_s2[i];
-        limits->jerk_mm_s3[i] -= need.jerk_mm_s3[i];
-    }
-}
-
-void takt_controller_program_config(const struct controller_config *config,
-                                    struct program_config *program)
-{
-    const struct machine *machine = config->machine;
-
-    memset(program, 0, sizeof(*program));
-    program->axes = takt_machine_axes(machine);
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        program->travel_min[i] = machine->axis[i].travel_min_mm;
-        program->travel_max[i] = machine->axis[i].travel_max_mm;
-    }
-    program->path_tolerance_mm = machine->path_tolerance_mm;
-    program->spindle_max_rpm = machine->spindle_max_rpm;
-    program->spindle_encoder = machine->spindle_encoder_counts > 0;
-    program->exact_path = config->exact_path;
-    program->block_delete = config->block_delete;
-    program->from_line = config->from_line;
-    program->sharp_corners = machine->sharp_corners;
-    program->correction_layers = CORRECTION_LAYERS_COUNT;
-    program->say = config->say;
-    program->listener = config->listener;
-    program->modes = config->modes;
-    program->tools = config->tools;
-    program->parameters = config->parameters;
-    program->waits = true;
-}
-
 void takt_controller_init(struct controller *c, const struct controller_config *config)
 {
     const struct point start = {0};
@@ -86,12 +23,12 @@ void takt_controller_init(struct controller *c, const struct controller_config *
     c->reader = config->reader;
     controller_shape_init(c, config);
     takt_correction_init(&c->correction, &c->machine.correction, takt_machine_axes(&c->machine),
-                         cycle_s(&c->machine), config->correction, &start);
+                         machine_cycle_s(&c->machine), config->correction, &start);
     takt_controller_start_program(c, config, &start);
     c->state = CONTROLLER_STARTING;
-    takt_spindle_watch_init(&c->spindle, cycle_s(&c->machine),
+    takt_spindle_watch_init(&c->spindle, machine_cycle_s(&c->machine),
                             c->machine.spindle_load_limit_percent, c->machine.spindle_at_speed_s);
-    takt_tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
+    takt_tool_changer_init(&c->changer, machine_cycle_s(&c->machine), c->machine.tool_change_s);
     takt_controller_spindle_sync_init(c);
     c->dcf = config->dcf;
     takt_controller_drives_config(&c->machine, c->dcf, &drives);
@@ -101,165 +38,6 @@ void takt_controller_init(struct controller *c, const struct controller_config *
     takt_controller_interpolator_config(&c->machine, &interpolator);
     takt_interpolator_init(&c->interpolator, &interpolator);
     takt_approach_init(&c->approach, &start);
-}
-
-/* The axes come to rest before it, where it waits. */
-static void hold_back(struct controller *c, const struct move *move)
-{
-    struct move stop = *move;
-
-    TAKT_ASSERT(takt_path_has_room(&c->path));
-    stop.kind = MOVE_DWELL;
-    stop.dwell_s = 0.0;
-    takt_path_push(&c->path, &stop);
-    c->program_waits = true;
-}
-
-/* The move that has waited. */
-static void take_held(struct controller *c)
-{
-    if (takt_controller_probe_begin(&c->probe)) {
-        takt_path_push(&c->path, &c->probe.move);
-        c->program_waits = false;
-    }
-}
-
-/* A move has been read: onto the path with it. */
-static void take_move(struct controller *c, struct move *move)
-{
-    TAKT_ASSERT(!c->program_ended);
-    c->program_error.code = TAKT_OK;
-    if (c->replays) {
-        takt_replay_prepare(move);
-    }
-    if (move->kind == MOVE_SETUP) {
-        takt_correction_tell_setup(&c->correction, move->channel, move->setup);
-    }
-    if (takt_controller_probe_ask(&c->probe, move, cycle_s(&c->machine),
-                                  takt_drives_have_probe(&c->drives))) {
-        takt_path_push(&c->path, move);
-    } else {
-        hold_back(c, move);
-    }
-    c->program_ended = move->kind == MOVE_END;
-}
-
-/* A line is wrong, and has changed nothing. */
-static bool leaves_out_line(struct controller *c)
-{
-    if (c->refuse == NULL || c->reader->program.phase == PROGRAM_ENDED ||
-        !c->refuse(c->reader->program.config.listener, &c->program_error)) {
-        return false;
-    }
-    c->program_error.code = TAKT_OK;
-    return true;
-}
-
-/* One move from the program onto the path. */
-static void read_move(struct controller *c)
-{
-    struct move move;
-
-    switch (takt_cutter_compensation_next(&c->reader->offset, &c->reader->program, &move,
-                                          &c->program_error)) {
-    case PROGRAM_MOVE:
-        take_move(c, &move);
-        break;
-    case PROGRAM_WAIT:
-        c->program_waits = true;
-        break;
-    case PROGRAM_LATER:
-        c->program_late = true;
-        break;
-    case PROGRAM_ERROR:
-        c->program_ended = !leaves_out_line(c);
-        break;
-    case PROGRAM_END:
-        c->program_ended = true;
-        break;
-    }
-    if (c->program_ended) {
-        takt_path_finish(&c->path);
-    }
-}
-
-/* The axes rest for the set-up that has been told: it is taken, and is in force before they move. True: it is, or *good is not. */
-static bool take_setup(struct controller *c, bool *good)
-{
-    if (!controller_probe_has_rest_for(&c->probe, MOVE_SETUP)) {
-        return true;
-    }
-    if (takt_correction_is_setting_up(&c->correction)) {
-        return false;
-    }
-    if (takt_correction_is_set_up(&c->correction)) {
-        return true;
-    }
-    *good = takt_correction_take_setup(&c->correction);
-    return !*good;
-}
-
-/* What the program asked has been answered: it goes on from where the axes rest. */
-static void take_answer(struct controller *c)
-{
-    struct program_answer answer;
-    struct diagnostic error;
-    bool good = true;
-
-    if (!take_setup(c, &good) || !takt_controller_probe_take(&c->probe, &answer, &error)) {
-        return;
-    }
-    if (!good) {
-        error.code = TAKT_ERROR_SETUP_RESERVE;
-    }
-    c->program_waits = false;
-    if (error.code != TAKT_OK) {
-        c->program_error = error;
-        c->program_ended = true;
-        takt_path_finish(&c->path);
-        return;
-    }
-    takt_cutter_compensation_answer(&c->reader->offset, &c->reader->program, &answer);
-}
-
-static bool can_read(struct controller *c)
-{
-    return !c->program_ended && !c->program_waits && !c->program_late &&
-           takt_path_has_room(&c->path);
-}
-
-/* A text that comes slowly begins to be driven when as much of it is there as is ever looked at. */
-static bool waits_for_text(struct controller *c)
-{
-    return c->program_late && !c->motion.has_ceiling &&
-           (!c->program_begins || takt_motion_ahead(&c->motion) == 0);
-}
-
-/* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
-#define TOP_UP_PART 8
-
-void takt_controller_background(struct controller *c)
-{
-    take_answer(c);
-    if (c->replays) {
-        takt_replay_read(&c->replay, &c->path.limits);
-    }
-    if (takt_motion_wanted(&c->motion) == NULL) {
-        return;
-    }
-    takt_path_go_on(&c->path);
-    take_held(c);
-    c->program_late = false;
-    const uint32_t wanted = takt_path_look_ahead(&c->path, c->machine.look_ahead_blocks);
-
-    if (takt_motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
-        while (can_read(c) && takt_motion_ahead(&c->motion) < wanted) {
-            read_move(c);
-        }
-    }
-    if (!waits_for_text(c)) {
-        takt_motion_build(&c->motion);
-    }
 }
 
 static void controller_fail(struct controller *c, const struct diagnostic *fault)

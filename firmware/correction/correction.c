@@ -21,26 +21,6 @@ _Static_assert(CORRECTION_LAYERS_COUNT <= 8, "a move has a byte for the layers a
 /* The layers that read tables. */
 #define LAYERS_OF_TABLES (1U << CORRECTION_AXES | 1U << CORRECTION_VOLUME)
 
-void takt_correction_settings_set_default(struct correction_settings *settings)
-{
-    memset(settings, 0, sizeof(*settings));
-    settings->largest_mm = 1.0;
-    settings->steepest_ratio = 0.005;
-    settings->fade_s = 1.0;
-    settings->reversal_fade_s = 0.25;
-    settings->turn_axis = AXIS_COUNT;
-    settings->head_axis = AXIS_COUNT;
-    settings->tool_direction[AXIS_Z] = 1.0;
-}
-
-void takt_correction_table_rules(const struct correction_settings *settings, unsigned axes,
-                                 struct table_rules *rules)
-{
-    rules->axes = axes;
-    rules->largest_mm = settings->largest_mm;
-    rules->steepest_ratio = settings->steepest_ratio;
-}
-
 unsigned takt_correction_axis_of(const struct correction *c, unsigned coordinate)
 {
     return coordinate < AXIS_LINEAR_COUNT ? coordinate : c->settings.turn_axis;
@@ -470,26 +450,6 @@ bool takt_correction_load(struct correction *c, const struct correction_tables *
 
 /* ---- the set-up of the part ---- */
 
-void takt_correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
-{
-    if (c->setup_waits) {
-        memcpy(number, c->setup_next.number, sizeof(c->setup_next.number));
-    } else {
-        takt_setup_get_numbers(c, number);
-    }
-}
-
-void takt_correction_forget_setup(struct correction *c)
-{
-    takt_correction_get_setup(c, c->setup_told);
-}
-
-void takt_correction_tell_setup(struct correction *c, unsigned which, double value)
-{
-    TAKT_ASSERT(which < CORRECTION_SETUP_VALUES);
-    c->setup_told[which] = value;
-}
-
 bool takt_correction_take_setup(struct correction *c)
 {
     struct need need;
@@ -512,19 +472,6 @@ bool takt_correction_is_setting_up(const struct correction *c)
     const unsigned bit = 1U << CORRECTION_SETUP;
 
     return c->setup_waits || ((c->fading | (wanted(c) ^ c->running)) & bit) != 0;
-}
-
-bool takt_correction_is_set_up(const struct correction *c)
-{
-    double number[CORRECTION_SETUP_VALUES];
-
-    takt_correction_get_setup(c, number);
-    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
-        if (number[i] != c->setup_told[i]) {
-            return false;
-        }
-    }
-    return true;
 }
 
 void takt_correction_settle_setup(struct correction *c)

@@ -9,6 +9,7 @@
  */
 #include "base/assert.h"
 #include "base/maths.h"
+#include "correction/correction.h"
 #include "correction/layer.h"
 #include "correction/setup.h"
 
@@ -260,3 +261,38 @@ const struct correction_layer takt_layer_setup = {
     .add = setup_add,
     .need = need_in_force,
 };
+
+/* ---- what the program tells ---- */
+
+void takt_correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
+{
+    if (c->setup_waits) {
+        memcpy(number, c->setup_next.number, sizeof(c->setup_next.number));
+    } else {
+        takt_setup_get_numbers(c, number);
+    }
+}
+
+void takt_correction_forget_setup(struct correction *c)
+{
+    takt_correction_get_setup(c, c->setup_told);
+}
+
+void takt_correction_tell_setup(struct correction *c, unsigned which, double value)
+{
+    TAKT_ASSERT(which < CORRECTION_SETUP_VALUES);
+    c->setup_told[which] = value;
+}
+
+bool takt_correction_is_set_up(const struct correction *c)
+{
+    double number[CORRECTION_SETUP_VALUES];
+
+    takt_correction_get_setup(c, number);
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        if (number[i] != c->setup_told[i]) {
+            return false;
+        }
+    }
+    return true;
+}

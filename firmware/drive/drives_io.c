@@ -7,6 +7,7 @@
  * when they change.
  *
  *     BOOT, with the drives; DRIVES_IO: asked and told, one node after the other; started, one a cycle; inputs have come
+ *     (drives_io_boot.c)
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -18,17 +19,11 @@
 #include <string.h>
 
 #define BITS_PER_BYTE 8
-#define BITS_PER_WORD 16
 #define IO_KINDS      (IO_INVERTED - 1)
 #define PERCENT       100.0
 
 /* Index of node k in axis_of_node. */
 #define INDEX_OF_IO(k) (AXIS_COUNT + 1U + (k))
-
-static unsigned bytes_of(const uint8_t bit[IO_BITS_MAX])
-{
-    return (io_wired_bits(bit) + BITS_PER_BYTE - 1) / BITS_PER_BYTE;
-}
 
 /* The inputs whose byte is this under a mask. */
 static uint16_t find_inputs(const struct io_wiring *wiring, unsigned mask, unsigned byte)
@@ -57,7 +52,7 @@ void takt_drives_io_init(struct drives *d, const struct drives_config *config)
 }
 
 /* "node 20", "node 1:20". */
-static struct word name_of(const struct drives *d, unsigned i)
+struct word takt_drives_io_name(const struct drives *d, unsigned i)
 {
     struct word word = {.length = 0};
     TAKT_ASSERT(i < d->io_count);
@@ -65,23 +60,10 @@ static struct word name_of(const struct drives *d, unsigned i)
     return word;
 }
 
-static void raise(struct drives *d, unsigned i, enum takt_error error, double value,
-                  const char *meaning)
+void takt_drives_io_raise(struct drives *d, unsigned i, enum takt_error error, double value,
+                          const char *meaning)
 {
-    const struct word word = name_of(d, i);
-    takt_drives_raise_named(d, &word, error, value, meaning);
-}
-
-/* "node 20, object 1017:00,". */
-static void raise_object(struct drives *d, unsigned i, enum takt_error error, double value,
-                         const char *meaning)
-{
-    struct word word = name_of(d, i);
-    takt_word_add_text(&word, ", object ");
-    takt_word_add_hex(&word, sdo_index(d->sdo.object), 4);
-    takt_word_add_text(&word, ":");
-    takt_word_add_hex(&word, sdo_sub(d->sdo.object), 2);
-    takt_word_add_text(&word, ",");
+    const struct word word = takt_drives_io_name(d, i);
     takt_drives_raise_named(d, &word, error, value, meaning);
 }
 
@@ -99,251 +81,6 @@ static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsig
     takt_drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
     takt_drives_raise_named(d, &word, error, bit, NULL);
 }
-
-/* ---- The start ---- */
-
-static bool send_nmt(const struct drives *d, const struct can_port *port, unsigned i,
-                     enum nmt_command command)
-{
-    TAKT_ASSERT(i < d->io_count && drives_io_bus_of(d, i) < CAN_BUSES_MAX);
-    return takt_drives_send_nmt(&port[drives_io_bus_of(d, i)], command, d->wiring[i].node);
-}
-
-void takt_drives_io_send_resets(struct drives *d, const struct can_port *port)
-{
-    for (unsigned i = 0; i < d->io_count; i++)
-        if (d->io[i].reset_pending && send_nmt(d, port, i, NMT_RESET_COMMUNICATION))
-            d->io[i].reset_pending = false;
-}
-
-bool takt_drives_io_boot(struct drives *d)
-{
-    bool all = true;
-    for (unsigned i = 0; i < d->io_count; i++) {
-        all = all && d->io[i].booted;
-        if (d->io[i].booted)
-            continue;
-        if (d->phase_cycles == d->boot_timeout_cycles)
-            d->io[i].reset_pending = true;
-        else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
-            raise(d, i, TAKT_ERROR_IO_ABSENT,
-                  2e-3 * takt_drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
-    }
-    return all;
-}
-
-/* What a node is asked, and told where there is a length. */
-enum step {
-    STEP_TYPE,
-    STEP_HEARTBEAT,
-    STEP_WATCH,
-    STEP_GUARD,
-    STEP_LIFE,
-    STEP_OUTPUT_BYTES,
-    STEP_OUTPUTS,
-    STEP_ANALOGUE_COUNT,
-    STEP_ANALOGUES,
-    STEP_INPUT_BYTES,
-    STEP_INPUTS,
-    STEP_BY_SYNC,
-    STEP_COUNT
-};
-static const struct {
-    uint32_t object;
-    uint8_t length;
-} steps[STEP_COUNT] = {
-    {SDO_OBJECT(OBJECT_DEVICE_TYPE, 0), 0},        {SDO_OBJECT(OBJECT_PRODUCER_HEARTBEAT, 0), 2},
-    {SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1), 4}, {SDO_OBJECT(OBJECT_GUARD_TIME, 0), 2},
-    {SDO_OBJECT(OBJECT_LIFE_TIME_FACTOR, 0), 1},   {SDO_OBJECT(OBJECT_RPDO_MAPPING, 0), 0},
-    {SDO_OBJECT(OBJECT_RPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_RPDO_MAPPING + 1, 0), 0},
-    {SDO_OBJECT(OBJECT_RPDO_MAPPING + 1, 1), 0},   {SDO_OBJECT(OBJECT_TPDO_MAPPING, 0), 0},
-    {SDO_OBJECT(OBJECT_TPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_TPDO, OBJECT_PDO_TYPE), 1},
-};
-
-static uint32_t value_of(const struct drives *d)
-{
-    const uint32_t lost_ms = (uint32_t)d->heartbeat_ms * DRIVES_HEARTBEATS_LOST;
-    switch (d->at_step) {
-    case STEP_HEARTBEAT:
-        return d->heartbeat_ms;
-    case STEP_WATCH:
-        return (uint32_t)d->controller_node << 16 | lost_ms;
-    case STEP_GUARD:
-        return takt_drives_guard_ms(d);
-    case STEP_LIFE:
-        return DRIVES_HEARTBEATS_LOST;
-    default:
-        return PDO_EVERY_SYNC;
-    }
-}
-
-/* Nothing is asked of outputs or inputs that nobody wants; only what has no heartbeat is guarded. */
-static bool is_wanted(const struct io_wiring *wiring, const struct drives_io *io, unsigned step)
-{
-    if (step == STEP_GUARD || step == STEP_LIFE)
-        return io->is_mute;
-    if (step == STEP_OUTPUT_BYTES || step == STEP_OUTPUTS)
-        return bytes_of(wiring->output) > 0;
-    if (step == STEP_ANALOGUE_COUNT || step == STEP_ANALOGUES)
-        return io_wired_analogues(wiring) > 0;
-    return step < STEP_INPUT_BYTES || bytes_of(wiring->input) > 0;
-}
-
-/* False: all nodes have been asked. */
-static bool ask_next(struct drives *d)
-{
-    while (d->at_axis < d->io_count) {
-        const struct io_wiring *wiring = &d->wiring[d->at_axis];
-        while (d->at_step < STEP_COUNT && !is_wanted(wiring, &d->io[d->at_axis], d->at_step))
-            d->at_step++;
-        if (d->at_step < STEP_COUNT) {
-            const struct drives_step step = {steps[d->at_step].object, steps[d->at_step].length,
-                                             value_of(d)};
-            takt_drives_ask(d, drives_io_bus_of(d, d->at_axis), wiring->node, &step);
-            return true;
-        }
-        d->at_axis++;
-        d->at_step = 0;
-    }
-    return false;
-}
-
-/*
- * Without a heartbeat, and without guarding, nobody would know of a node that has failed; all else that it refuses makes up
- * for itself.
- */
-static void take_refusal(struct drives *d, unsigned i)
-{
-    TAKT_ASSERT(i < d->io_count);
-    d->io[i].is_mute = d->io[i].is_mute || (d->at_step == STEP_HEARTBEAT && d->heartbeat_ms > 0);
-    if (d->at_step != STEP_WATCH && d->at_step != STEP_BY_SYNC && d->at_step != STEP_LIFE &&
-        !(d->at_step == STEP_HEARTBEAT && d->io[i].is_mute))
-        raise_object(d, i, TAKT_ERROR_IO_REFUSES, d->sdo.abort_code,
-                     takt_sdo_abort_text(d->sdo.abort_code));
-}
-
-static void require(struct drives *d, unsigned i, bool is_so, uint32_t value)
-{
-    if (!is_so)
-        raise_object(d, i, TAKT_ERROR_IO_UNMAPPED, value, NULL);
-}
-
-static void take_value(struct drives *d, unsigned i, uint32_t value)
-{
-    const struct io_wiring *wiring = &d->wiring[i];
-    struct drives_io *io = &d->io[i];
-    TAKT_ASSERT(i < d->io_count);
-    switch ((enum step)d->at_step) {
-    case STEP_TYPE:
-        if ((value & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_401)
-            raise(d, i, TAKT_ERROR_IO_TYPE, value, NULL);
-        break;
-    case STEP_OUTPUT_BYTES:
-        io->output_bytes = (uint8_t)value;
-        require(d, i, value >= bytes_of(wiring->output) && value <= d->frame_max, value);
-        break;
-    case STEP_OUTPUTS:
-        require(d, i, value == PDO_MAPPED(OBJECT_IO_OUTPUTS, 1, BITS_PER_BYTE), value);
-        break;
-    case STEP_ANALOGUE_COUNT:
-        io->analogues = (uint8_t)value;
-        require(d, i, value >= io_wired_analogues(wiring) && value <= IO_ANALOGUE_MAX, value);
-        break;
-    case STEP_ANALOGUES:
-        require(d, i, value == PDO_MAPPED(OBJECT_IO_ANALOGUE_OUTPUTS, 1, BITS_PER_WORD), value);
-        break;
-    case STEP_INPUT_BYTES:
-        io->input_bytes = (uint8_t)value;
-        require(d, i, value >= bytes_of(wiring->input) && value <= d->frame_max, value);
-        break;
-    case STEP_INPUTS:
-        require(d, i, value == PDO_MAPPED(OBJECT_IO_INPUTS, 1, BITS_PER_BYTE), value);
-        break;
-    case STEP_BY_SYNC:
-        io->by_sync = true;
-        break;
-    case STEP_GUARD:
-        io->guard.is_on = true;
-        break;
-    case STEP_HEARTBEAT:
-    case STEP_WATCH:
-    case STEP_LIFE:
-    case STEP_COUNT:
-        break;
-    }
-}
-
-/* What has come of the last request; false: nothing yet, or not the end of it. */
-static bool take_answer(struct drives *d)
-{
-    const unsigned i = d->at_axis;
-    switch (d->sdo.result) {
-    case SDO_BUSY:
-        return false;
-    case SDO_UNANSWERED:
-        if (d->repeats++ >= DRIVES_SDO_REPEATS)
-            raise_object(d, i, TAKT_ERROR_IO_UNANSWERED,
-                         takt_drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
-        return true;
-    case SDO_DONE:
-        take_value(d, i, takt_sdo_client_number(&d->sdo));
-        break;
-    case SDO_ABORTED:
-        take_refusal(d, i);
-        break;
-    case SDO_IDLE:
-        return true;
-    }
-    d->repeats = 0;
-    d->at_step++;
-    return true;
-}
-
-static bool all_work(const struct drives *d)
-{
-    bool all = true;
-    for (unsigned i = 0; i < d->io_count; i++)
-        all = all && d->io[i].started && (d->io[i].heard || d->io[i].input_bytes == 0);
-    return all;
-}
-
-static void raise_silent(struct drives *d)
-{
-    for (unsigned i = 0; i < d->io_count; i++)
-        if (!d->io[i].heard && d->io[i].input_bytes > 0)
-            raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, d->start_timeout_cycles),
-                  NULL);
-}
-
-void takt_drives_io_start(struct drives *d)
-{
-    if (d->at_axis < d->io_count) {
-        if (take_answer(d) && d->state == DRIVES_STARTING && !ask_next(d))
-            d->phase_cycles = 0;
-    } else if (all_work(d)) {
-        d->io_cycles = UINT32_MAX - 1; /* they are due */
-        takt_drives_enter_phase(d, DRIVES_START);
-    } else if (d->phase_cycles > d->start_timeout_cycles) {
-        raise_silent(d);
-    }
-}
-
-/* One node a cycle, once all have been asked; what one has sent before is history. */
-void takt_drives_io_send_start(struct drives *d, const struct can_port *port)
-{
-    for (unsigned i = 0; i < d->io_count && d->at_axis == d->io_count; i++) {
-        struct drives_io *io = &d->io[i];
-        if (io->started)
-            continue;
-        io->started = send_nmt(d, port, i, NMT_START);
-        takt_drives_begin_guard(d, &io->guard);
-        io->heard = false;
-        io->reported = io->heartbeat = d->cycle;
-        return;
-    }
-}
-
-/* ---- Every cycle ---- */
 
 static bool are_watched(const struct drives *d)
 {
@@ -375,7 +112,7 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING && d->phase < DRIVES_IO)
         io->booted = !io->reset_pending;
     else if (state == NMT_BOOTED || (state != NMT_OPERATIONAL && are_watched(d)))
-        raise(d, i, TAKT_ERROR_IO_LEFT, state, drives_nmt_text(state));
+        takt_drives_io_raise(d, i, TAKT_ERROR_IO_LEFT, state, drives_nmt_text(state));
 }
 
 static void take_emergency(struct drives *d, unsigned i, const struct can_frame *frame)
@@ -383,7 +120,7 @@ static void take_emergency(struct drives *d, unsigned i, const struct can_frame 
     struct emcy emcy;
     TAKT_ASSERT(i < d->io_count);
     if (takt_emcy_read(frame, &emcy) && emcy.code != EMCY_NONE && are_watched(d))
-        raise(d, i, TAKT_ERROR_IO_FAULT, emcy.code, takt_emcy_text(emcy.code));
+        takt_drives_io_raise(d, i, TAKT_ERROR_IO_FAULT, emcy.code, takt_emcy_text(emcy.code));
 }
 
 void takt_drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame)
@@ -416,9 +153,10 @@ static void check_silence(struct drives *d, unsigned i)
     const uint32_t silent = d->cycle - io->reported, heartbeat_age = d->cycle - io->heartbeat;
     TAKT_ASSERT(i < d->io_count);
     if (io->by_sync && silent > d->answer_timeout_cycles)
-        raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, silent), NULL);
+        takt_drives_io_raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, silent), NULL);
     if (heartbeat_age > d->heartbeat_age_max_cycles)
-        raise(d, i, TAKT_ERROR_IO_HEARTBEAT, takt_drives_cycles_ms(d, heartbeat_age), NULL);
+        takt_drives_io_raise(d, i, TAKT_ERROR_IO_HEARTBEAT, takt_drives_cycles_ms(d, heartbeat_age),
+                             NULL);
 }
 
 /* Limit inputs stop when they become low, so that an axis can be driven off; and not while drives look for home there. */
@@ -591,7 +329,7 @@ uint32_t takt_drives_io_wired_bits(const struct io_wiring *wiring, unsigned coun
     struct io_load load = {0};
     for (unsigned i = 0; i < count; i++)
         if (wiring[i].bus == bus)
-            add_load(&load, rates, bytes_of(wiring[i].input), bytes_of(wiring[i].output),
-                     io_wired_analogues(&wiring[i]));
+            add_load(&load, rates, drives_io_bytes_of(wiring[i].input),
+                     drives_io_bytes_of(wiring[i].output), io_wired_analogues(&wiring[i]));
     return load.cyclic_bits + load.output_bits;
 }

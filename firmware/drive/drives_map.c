@@ -11,16 +11,15 @@
  *     9 - 12 TPDO1-4 anew, if they have found no such place: each in one of its own, without SYNC by the timer, once a cycle
  *
  * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that is
- * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its
- * identifier, type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case
- * of its own, and what is in a frame beside what takt knows keeps the value that the drive has for it.
+ * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its identifier,
+ * type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case of its own, and what is in a frame
+ * beside what takt knows keeps the value that the drive has for it.
  */
 #include "base/assert.h"
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
 #include "drive/drives_layout.h"
 
-#include <stddef.h>
 #include <string.h>
 
 /* RPDOs, and as many TPDOs, that are used or made not valid. */

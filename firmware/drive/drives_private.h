@@ -143,13 +143,22 @@ bool takt_drives_tells_mode(const struct drives_axis *axis);
 uint16_t takt_drives_controlword(const struct drives *d, const struct drives_axis *axis);
 
 /*
- * I/O nodes, drives_io.c: before anything else; a frame of one of them; what is watched in every cycle. boot: true when
- * all have booted.
+ * I/O nodes, drives_io.c and drives_io_boot.c: before anything else; a frame of one of them; what is watched in every cycle.
+ * boot: true when all have booted.
  */
 void takt_drives_io_init(struct drives *d, const struct drives_config *config);
 void takt_drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame);
 void takt_drives_io_check(struct drives *d);
 bool takt_drives_io_boot(struct drives *d);
+/* Bytes that what is wired takes, eight a byte. */
+static inline unsigned drives_io_bytes_of(const uint8_t bit[IO_BITS_MAX])
+{
+    return (io_wired_bits(bit) + 7U) / 8U;
+}
+/* "node 20", "node 1:20", and a fault that begins with it. */
+struct word takt_drives_io_name(const struct drives *d, unsigned i);
+void takt_drives_io_raise(struct drives *d, unsigned i, enum takt_error error, double value,
+                          const char *meaning);
 /* A cycle of DRIVES_IO, and what it sends. */
 void takt_drives_io_start(struct drives *d);
 void takt_drives_io_send_start(struct drives *d, const struct can_port *port);

@@ -133,6 +133,12 @@ void takt_machine_set_default(struct machine *machine);
 #define MACHINE_DATA_BITRATE_MAX 8000000
 struct drives_rates takt_machine_get_rates(const struct machine *machine);
 
+/* The control cycle. */
+static inline double machine_cycle_s(const struct machine *machine)
+{
+    return 1e-6 * (double)machine->cycle_us;
+}
+
 /* Bit i set: the machine has axis i. */
 unsigned takt_machine_axes(const struct machine *machine);
 

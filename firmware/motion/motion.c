@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "base/handoff.h"
 #include "base/maths.h"
+#include "motion/exchange.h"
 #include "motion/held.h"
 #include "plan/path_unit.h"
 #include "plan/span.h"
@@ -12,9 +13,6 @@
 
 /* A setpoint this close to a junction that it lands on in motion is on it: rounding of the trapezoidal reference's positions, path units. */
 #define LANDED_UNITS 8.0
-
-/* A ceiling that had no room for all blocks is made anew when the trapezoidal reference has gone this part of its length. */
-#define RENEW_PART 0.25
 
 /* Waits without a cycle, and blocks, that one cycle passes at most. */
 #define PASS_MAX 64
@@ -44,196 +42,6 @@ void takt_motion_init(struct motion *m, struct path *path, const struct point *s
 static const struct block *first_block(const struct motion *m)
 {
     return path_first(m->path);
-}
-
-/* -- background -- */
-
-/* One of the path's two ceilings: the cycle is in one, and may be going over to the other. */
-static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
-{
-    TAKT_ASSERT(which != m->path->spare);
-    return path_ceiling(m->path, which);
-}
-
-const struct ceiling_request *takt_motion_wanted(struct motion *m)
-{
-    const bool wanted = handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built);
-
-    TAKT_ASSERT(m->active < 2);
-    m->path->spare = wanted ? 1 - m->active : PATH_NO_SPARE;
-    return wanted ? &m->request : NULL;
-}
-
-uint32_t takt_motion_ahead(struct motion *m)
-{
-    if ((int32_t)(m->request.first - m->ahead) > 0) {
-        m->ahead = m->request.first;
-    }
-    while (m->ahead != m->path->closed) {
-        if ((int64_t)(path_end(m->path, m->ahead) - m->request.reference) > 0) {
-            break;
-        }
-        m->ahead++;
-    }
-    TAKT_ASSERT((int32_t)(m->path->closed - m->ahead) >= 0);
-    return m->path->closed == m->ahead ? 0 : m->path->closed - m->ahead - 1;
-}
-
-/* What is asked for, whole: a late background may have been asked anew while it took it. */
-static struct ceiling_request take_request(const struct motion *m, uint32_t *restarts)
-{
-    struct ceiling_request request;
-    uint32_t times;
-
-    do {
-        times = handoff_get_count(&m->asked);
-        request = m->request;
-        *restarts = m->asked_restarts;
-    } while (times != handoff_get_count(&m->asked));
-    return request;
-}
-
-/* Over all blocks, or as far as there was room and the trapezoidal reference has not come near the end of that. */
-static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t reference)
-{
-    TAKT_ASSERT(c->complete || c->count > 0);
-    if (c->complete) {
-        return m->made_closed == m->path->closed;
-    }
-    return path_mm(c->origin, reference) < RENEW_PART * c->end_mm[c->count - 1];
-}
-
-/* The path that was asked about has been dropped since: blocks of another one may lie in its ring by now. */
-static bool is_dropped(const struct motion *m, uint32_t restarts)
-{
-    return restarts != handoff_get_count(&m->restarts);
-}
-
-/* Would a new ceiling be the one that is there? */
-static bool is_unchanged(const struct motion *m, const struct ceiling_request *request)
-{
-    const struct ceiling *c = ceiling_of(m, m->active);
-
-    return m->made_holds && reaches_far(m, c, request->reference) &&
-           m->made.feed_ratio == request->feed_ratio &&
-           m->made.rapid_ratio == request->rapid_ratio &&
-           m->made.spindle_rev_s == request->spindle_rev_s;
-}
-
-void takt_motion_build(struct motion *m)
-{
-    uint32_t restarts;
-    const struct ceiling_request request = take_request(m, &restarts);
-
-    TAKT_ASSERT(m->wanted && !m->built);
-    m->path->spare = PATH_NO_SPARE;
-    m->made_holds = m->made_holds && !is_dropped(m, restarts);
-    if (is_dropped(m, restarts) || is_unchanged(m, &request)) {
-        handoff_set_flag(&m->wanted, false);
-        return;
-    }
-    m->built_restarts = restarts;
-    takt_ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
-    m->made = request;
-    m->made_closed = m->path->closed;
-    m->made_holds = true;
-    if (!m->has_ceiling) {
-        (void)first_block(m); /* until the first ceiling is there, the cycle reads none */
-    }
-    handoff_set_flag(&m->built, true);
-}
-
-/* -- exchange with the background -- */
-
-/* A ceiling of a path that has been dropped since is of no use. */
-static void offer_ceiling(struct motion *m)
-{
-    TAKT_ASSERT(m->built);
-    m->made_holds = m->built_restarts == m->restarts;
-    if (m->made_holds) {
-        m->active = 1 - m->active;
-        m->has_ceiling = true;
-        takt_reference_set_ceiling(&m->reference, ceiling_of(m, m->active));
-    }
-    handoff_set_flag(&m->wanted, false);
-    handoff_set_flag(&m->built, false);
-}
-
-void takt_motion_prepare(struct motion *m)
-{
-    if (!m->has_ceiling && m->built) {
-        offer_ceiling(m);
-    }
-    (void)reference_take(&m->reference);
-}
-
-/* Where the ceiling ends that the trapezoidal reference is under. */
-static uint64_t piece_leave(const struct motion *m)
-{
-    const struct reference_place *here = &m->reference.here;
-
-    if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
-        return m->reference.at;
-    }
-    return takt_ceiling_leave(here->ceiling, here->piece);
-}
-
-/* An override asked for while the trapezoidal reference brakes waits for the next block (seed 003 section 2). 0 is a hold. */
-static void ask(struct motion *m, const struct motion_operator *wanted)
-{
-    const uint64_t leave = piece_leave(m);
-    const bool braking = m->reference.feed > 0.0 && m->reference.since_minus == 0;
-
-    TAKT_ASSERT((int32_t)(m->path->first - m->path->kept) >= 0);
-    if (!braking || leave != m->asked_leave) {
-        m->request.feed_ratio =
-            wanted->feed_ratio > 0.0 ? wanted->feed_ratio : m->request.feed_ratio;
-        m->request.rapid_ratio =
-            wanted->rapid_ratio > 0.0 ? wanted->rapid_ratio : m->request.rapid_ratio;
-        if (wanted->measures && wanted->spindle_rev_s > 0.0 && m->path->has_revolution_feed) {
-            m->request.spindle_rev_s = wanted->spindle_rev_s;
-        }
-    }
-    m->asked_leave = leave;
-    m->asked_restarts = m->restarts;
-    m->request.first = m->path->first;
-    m->request.reference = m->reference.at;
-    m->request.span = m->reference.span;
-    m->request.cycles = m->reference.cycles;
-    m->asked++;
-    handoff_set_count(&m->path->kept, m->path->first);
-    handoff_set_flag(&m->wanted, true);
-}
-
-/* The trapezoidal reference has not taken the last ceiling: that is free, and another one is needed. */
-static void note_refused(struct motion *m)
-{
-    if (m->reference.here.ceiling == path_ceiling(m->path, 1 - m->active)) {
-        m->active = 1 - m->active;
-        m->made_holds = false;
-    }
-}
-
-/* While a ceiling is being taken none is free to be made: then a new one is asked for some cycles later. */
-static void exchange(struct motion *m, const struct motion_operator *wanted)
-{
-    if (!m->has_ceiling || m->cycles % MOTION_EXCHANGE_CYCLES == 0) {
-        if (m->built) {
-            offer_ceiling(m);
-        } else if (m->wanted) {
-            m->late++;
-        }
-        m->asks = true;
-    }
-    m->busy = m->busy || m->reference.coming.ceiling != NULL;
-    if (reference_take(&m->reference)) {
-        return;
-    }
-    note_refused(m);
-    if (m->asks) {
-        ask(m, wanted);
-        m->asks = false;
-    }
 }
 
 /* -- stops, and what happens at them -- */
@@ -574,7 +382,7 @@ enum motion_result takt_motion_cycle(struct motion *m, const struct motion_opera
         return MOTION_NOT_YET;
     }
     m->busy = false;
-    exchange(m, wanted);
+    takt_motion_exchange(m, wanted);
     const enum motion_result result = serve(m, wanted, &b);
 
     if (result != MOTION_CYCLE) {

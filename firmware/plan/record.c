@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "base/maths.h"
 #include "plan/bytes.h"
+#include "plan/record_parts.h"
 
 #include <string.h>
 
@@ -27,20 +28,6 @@
 #define FLAG_MOVE_END       0x40U /* of a piece: it ends where the move does */
 #define FLAG_TURNS          0x80U /* the turns of an arc follow: they are not 1 */
 
-#define CURVE_OUTWARD    1U
-#define CURVE_CUSP_START 2U
-#define CURVE_CUSP_END   4U
-#define CURVE_ROTARY     8U
-
-/* Bits of an event's one. */
-#define EVENT_MIST        0x01U
-#define EVENT_FLOOD       0x02U
-#define EVENT_TOOL_CHANGE 0x04U
-#define EVENT_TOOL_LOADED 0x08U
-#define EVENT_ANALOGUE    0x10U
-#define EVENT_WITH_MOTION 0x20U
-#define EVENT_OPTIONAL    0x40U
-
 _Static_assert(sizeof(struct record_modes) == 48, "no padding that could differ");
 _Static_assert(MOVE_END <= KIND_MASK && GOVERNOR_RAMP < 8, "both fit into a byte");
 
@@ -51,49 +38,9 @@ bool takt_record_is_same(const void *a, const void *b, size_t size)
     return memcmp(a, b, size) == 0;
 }
 
-static bool is_same_number(double a, double b)
-{
-    return takt_record_is_same(&a, &b, sizeof(a));
-}
-
 static bool is_same_point(const struct point *a, const struct point *b)
 {
     return takt_record_is_same(a, b, sizeof(*a));
-}
-
-/* The coordinates that are not 0; returns which those are. */
-static unsigned put_coordinates(uint8_t **to, const struct point *p)
-{
-    unsigned axes = 0;
-
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (!is_same_number(p->at[i], 0.0)) {
-            axes |= 1U << i;
-            bytes_put_double(to, p->at[i]);
-        }
-    }
-    return axes;
-}
-
-static void take_coordinates(const uint8_t **from, unsigned axes, struct point *p)
-{
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        p->at[i] = (axes >> i & 1U) != 0 ? bytes_take_double(from) : 0.0;
-    }
-}
-
-static void put_point(uint8_t **to, const struct point *p)
-{
-    uint8_t *axes = (*to)++;
-
-    *axes = (uint8_t)put_coordinates(to, p);
-}
-
-static void take_point(const uint8_t **from, struct point *p)
-{
-    const unsigned axes = bytes_take_byte(from);
-
-    take_coordinates(from, axes, p);
 }
 
 /* -- modes -- */
@@ -129,163 +76,6 @@ static void take_modes(const struct record_modes *modes, struct move *move)
     memcpy(move->overhang_mm, modes->overhang_mm, sizeof(modes->overhang_mm));
 }
 
-/* -- events -- */
-
-static unsigned event_bits(const struct move *m)
-{
-    return (m->mist ? EVENT_MIST : 0U) | (m->flood ? EVENT_FLOOD : 0U) |
-           (m->tool_change ? EVENT_TOOL_CHANGE : 0U) | (m->tool_loaded ? EVENT_TOOL_LOADED : 0U) |
-           (m->analogue ? EVENT_ANALOGUE : 0U) | (m->with_motion ? EVENT_WITH_MOTION : 0U) |
-           (m->optional ? EVENT_OPTIONAL : 0U);
-}
-
-/* The numbers of every kind lie where those of a spindle do (program/move.h), which has the most of them. */
-static void put_event(uint8_t **to, const struct move *m)
-{
-    bytes_put_double(to, m->speed_rpm);
-    bytes_put_double(to, m->surface_mm_s);
-    bytes_put_double(to, m->surface_x_mm);
-    bytes_put_word(to, m->channel);
-    bytes_put_byte(to, (unsigned)m->direction);
-    bytes_put_byte(to, (unsigned)m->orient_way);
-    bytes_put_byte(to, (unsigned)m->input_wait);
-    bytes_put_byte(to, event_bits(m));
-}
-
-static void take_event(const uint8_t **from, struct move *m)
-{
-    m->speed_rpm = bytes_take_double(from);
-    m->surface_mm_s = bytes_take_double(from);
-    m->surface_x_mm = bytes_take_double(from);
-    m->channel = bytes_take_word(from);
-    m->direction = (enum spindle_direction)bytes_take_byte(from);
-    m->orient_way = (enum orient_way)bytes_take_byte(from);
-    m->input_wait = (enum input_wait)bytes_take_byte(from);
-    const unsigned bits = bytes_take_byte(from);
-
-    m->mist = (bits & EVENT_MIST) != 0;
-    m->flood = (bits & EVENT_FLOOD) != 0;
-    m->tool_change = (bits & EVENT_TOOL_CHANGE) != 0;
-    m->tool_loaded = (bits & EVENT_TOOL_LOADED) != 0;
-    m->analogue = (bits & EVENT_ANALOGUE) != 0;
-    m->with_motion = (bits & EVENT_WITH_MOTION) != 0;
-    m->optional = (bits & EVENT_OPTIONAL) != 0;
-}
-
-/* -- what kinds of motion have beside their ends -- */
-
-/* Has it a centre? */
-static bool is_round(const struct move *m)
-{
-    return move_is_arc(m) || move_is_involute(m);
-}
-
-static void put_course(uint8_t **to, const struct move *m)
-{
-    for (unsigned i = 0; i < 2; i++) {
-        bytes_put_double(to, m->heading_rad[i]);
-        bytes_put_double(to, m->curvature_1_mm[i]);
-    }
-    bytes_put_double(to, m->spline_mm);
-}
-
-static void take_course(const uint8_t **from, struct move *m)
-{
-    for (unsigned i = 0; i < 2; i++) {
-        m->heading_rad[i] = bytes_take_double(from);
-        m->curvature_1_mm[i] = bytes_take_double(from);
-    }
-    m->spline_mm = bytes_take_double(from);
-}
-
-static void put_shape(uint8_t **to, const struct move *m)
-{
-    if (is_round(m)) {
-        bytes_put_double(to, m->centre_mm[0]);
-        bytes_put_double(to, m->centre_mm[1]);
-        if (m->turns != 1) {
-            bytes_put_word(to, m->turns);
-        }
-    }
-    if (move_is_involute(m)) {
-        bytes_put_double(to, m->base_radius_mm);
-    }
-    if (m->kind == MOVE_SPLINE) {
-        put_course(to, m);
-    }
-    if (m->kind == MOVE_TAP_OUT) {
-        bytes_put_double(to, m->speed_ratio);
-    }
-}
-
-static void take_shape(const uint8_t **from, unsigned flags, struct move *m)
-{
-    if (is_round(m)) {
-        m->centre_mm[0] = bytes_take_double(from);
-        m->centre_mm[1] = bytes_take_double(from);
-        m->turns = (flags & FLAG_TURNS) != 0 ? bytes_take_word(from) : 1;
-    }
-    if (move_is_involute(m)) {
-        m->base_radius_mm = bytes_take_double(from);
-    }
-    if (m->kind == MOVE_SPLINE) {
-        take_course(from, m);
-    }
-    if (m->kind == MOVE_TAP_OUT) {
-        m->speed_ratio = bytes_take_double(from);
-    }
-}
-
-/* A piece of an involute, which is costly to cut again. */
-static void put_involute(uint8_t **to, const struct block *b)
-{
-    const struct curve_involute *v = &b->curve.involute;
-    const unsigned bits =
-        (v->outward ? CURVE_OUTWARD : 0U) | (v->cusp_start ? CURVE_CUSP_START : 0U) |
-        (v->cusp_end ? CURVE_CUSP_END : 0U) | (b->curve.rotary ? CURVE_ROTARY : 0U);
-
-    put_point(to, &b->move.end);
-    put_point(to, &b->curve.slope);
-    bytes_put_double(to, b->curve.length_mm);
-    bytes_put_byte(to, bits);
-    bytes_put_byte(to, v->first);
-    bytes_put_byte(to, v->second);
-    bytes_put_double(to, v->centre_mm[0]);
-    bytes_put_double(to, v->centre_mm[1]);
-    bytes_put_double(to, v->radius_mm);
-    bytes_put_double(to, v->hand);
-    bytes_put_double(to, v->heading_rad);
-    bytes_put_double(to, v->square_start_rad2);
-    bytes_put_double(to, v->square_rate_rad2_mm);
-    bytes_put_double(to, v->plane_ratio);
-}
-
-static void take_involute(const uint8_t **from, struct block *b)
-{
-    struct curve_involute *v = &b->curve.involute;
-
-    take_point(from, &b->move.end);
-    take_point(from, &b->curve.slope);
-    b->curve.kind = CURVE_INVOLUTE;
-    b->curve.length_mm = bytes_take_double(from);
-    const unsigned bits = bytes_take_byte(from);
-
-    b->curve.rotary = (bits & CURVE_ROTARY) != 0;
-    v->outward = (bits & CURVE_OUTWARD) != 0;
-    v->cusp_start = (bits & CURVE_CUSP_START) != 0;
-    v->cusp_end = (bits & CURVE_CUSP_END) != 0;
-    v->first = (unsigned char)bytes_take_byte(from);
-    v->second = (unsigned char)bytes_take_byte(from);
-    v->centre_mm[0] = bytes_take_double(from);
-    v->centre_mm[1] = bytes_take_double(from);
-    v->radius_mm = bytes_take_double(from);
-    v->hand = bytes_take_double(from);
-    v->heading_rad = bytes_take_double(from);
-    v->square_start_rad2 = bytes_take_double(from);
-    v->square_rate_rad2_mm = bytes_take_double(from);
-    v->plane_ratio = bytes_take_double(from);
-}
-
 /* -- writing -- */
 static unsigned flags_of(const struct block *b, bool spline, const struct record_chain *chain)
 {
@@ -294,7 +84,7 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
                            !(chain->has_end && is_same_point(&b->curve.start, &chain->end));
 
     return (has_start ? FLAG_START : 0U) | (m->feed_rev_mm != 0.0 ? FLAG_REVOLUTION : 0U) |
-           (is_round(m) && m->turns != 1 ? FLAG_TURNS : 0U) |
+           (record_is_round(m) && m->turns != 1 ? FLAG_TURNS : 0U) |
            (m->probe_away ? FLAG_PROBE_AWAY : 0U) | (m->probe_optional ? FLAG_PROBE_OPTIONAL : 0U) |
            (spline ? FLAG_SPLINE : 0U);
 }
@@ -310,10 +100,10 @@ static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point cont
         chain->has_control && takt_record_is_same(chain->control, control, sizeof(chain->control));
 
     if (chained && !has_end) {
-        bytes[AT_END] = (uint8_t)put_coordinates(to, &control[3]);
+        bytes[AT_END] = (uint8_t)takt_record_put_coordinates(to, &control[3]);
     } else {
         for (unsigned i = chained ? 3 : 0; i < 4; i++) {
-            put_point(to, &control[i]);
+            takt_record_put_point(to, &control[i]);
         }
     }
     memcpy(chain->control, &control[1], sizeof(chain->control));
@@ -323,14 +113,14 @@ static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point cont
 static void put_motion(uint8_t **to, const struct block *b, unsigned flags)
 {
     if ((flags & FLAG_START) != 0) {
-        put_point(to, &b->curve.start);
+        takt_record_put_point(to, &b->curve.start);
     }
     if ((flags & FLAG_SPLINE) != 0) {
         return;
     }
-    put_shape(to, &b->move);
+    takt_record_put_shape(to, &b->move);
     if (b->curve.kind == CURVE_INVOLUTE) {
-        put_involute(to, b);
+        takt_record_put_involute(to, b);
     }
 }
 
@@ -359,14 +149,14 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     bytes_put_half(&to, b->move.line);
     bytes_put_half(&to, b->number);
     to = bytes + HEAD_SIZE;
-    bytes[AT_END] = has_end ? (uint8_t)put_coordinates(&to, &end) : 0;
+    bytes[AT_END] = has_end ? (uint8_t)takt_record_put_coordinates(&to, &end) : 0;
     if ((flags & FLAG_REVOLUTION) != 0) {
         bytes_put_double(&to, b->move.feed_rev_mm / b->scale);
     }
     if (block_is_motion(b)) {
         put_motion(&to, b, flags);
     } else {
-        put_event(&to, &b->move);
+        takt_record_put_event(&to, &b->move);
     }
     if (spline) {
         flags |= put_spline(bytes, &to, control, chain, has_end);
@@ -413,7 +203,7 @@ static void read_end(const uint8_t *record, struct point *end)
 {
     const uint8_t *from = record + HEAD_SIZE;
 
-    take_coordinates(&from, end_axes(record), end);
+    takt_record_take_coordinates(&from, end_axes(record), end);
 }
 
 /* What follows the end. */
@@ -470,7 +260,7 @@ void takt_record_read_move(const uint8_t *record, const struct record_modes *mod
 
     if (!move_is_motion(move)) {
         memset(&move->end, 0, sizeof(move->end));
-        take_event(&from, move);
+        takt_record_take_event(&from, move);
     }
 }
 
@@ -488,11 +278,11 @@ static unsigned read_control(const uint8_t *record, struct point control[], unsi
         (void)bytes_take_double(&from);
     }
     if (has_control_alone(record)) {
-        take_coordinates(&from, record[AT_END], &control[count - 1]);
+        takt_record_take_coordinates(&from, record[AT_END], &control[count - 1]);
         return count - 1;
     }
     for (unsigned i = chained ? 3 : 0; i < 4; i++) {
-        take_point(&from, &control[i + count > 4 ? i + count - 4 : 0]);
+        takt_record_take_point(&from, &control[i + count > 4 ? i + count - 4 : 0]);
     }
     return chained ? count - 1 : 0;
 }
@@ -530,14 +320,14 @@ static void read_motion(const uint8_t *record, const uint8_t *const before[RECOR
     struct point start = {{0.0}};
 
     if ((record[AT_FLAGS] & FLAG_START) != 0) {
-        take_point(&from, &start);
+        takt_record_take_point(&from, &start);
     } else if (before[0] != NULL) {
         read_end(before[0], &start);
     }
-    take_shape(&from, record[AT_FLAGS], &b->move);
+    takt_record_take_shape(&from, (record[AT_FLAGS] & FLAG_TURNS) != 0, &b->move);
     if (move_is_involute(&b->move)) {
         memset(&b->curve, 0, sizeof(b->curve));
-        take_involute(&from, b);
+        takt_record_take_involute(&from, b);
         b->curve.end = end;
     }
     b->curve.start = start;
@@ -560,7 +350,7 @@ void takt_record_take(const uint8_t *record, const uint8_t *const before[RECORD_
     if (!move_is_motion(&b->move)) {
         memset(&b->move.end, 0, sizeof(b->move.end));
         memset(&b->curve, 0, sizeof(b->curve));
-        take_event(&from, &b->move);
+        takt_record_take_event(&from, &b->move);
     } else if ((record[AT_FLAGS] & FLAG_SPLINE) != 0) {
         read_spline(record, before, b);
     } else {

@@ -45,8 +45,18 @@ bool takt_servo_send(struct servo *drive, enum servo_frame kind, const struct ca
 void takt_servo_set_filter(struct servo *drive);
 /* Times have changed: look at all of them at the next step. */
 void takt_servo_look_soon(struct servo *drive);
+
+/* ---- nmt.c ---- */
+
+void takt_servo_send_heartbeat(struct servo *drive, enum nmt_state state);
 void takt_servo_restart_heartbeat(struct servo *drive);
 void takt_servo_restart_consumer(struct servo *drive, unsigned i);
+/* Frames of NMT, another node's heartbeat, and the question of a master that guards. */
+void takt_servo_take_nmt(struct servo *drive, const struct can_frame *frame);
+void takt_servo_take_heartbeat(struct servo *drive, const struct can_frame *frame);
+void takt_servo_take_guard(struct servo *drive);
+/* Objects 100C and 100D; 0: no guarding master is watched. */
+uint32_t takt_servo_life_ms(const struct servo *drive);
 
 /* -1: the motor turns the other way than the axis counts. */
 static inline double servo_sign(const struct servo *drive)
@@ -78,8 +88,28 @@ void takt_servo_set_communication_error(struct servo *drive, uint16_t code);
 void takt_servo_send_waiting_emergencies(struct servo *drive);
 void takt_servo_clear_history(struct servo *drive);
 
-/* ---- pdo.c ---- */
+/* ---- pdo.c, pdo_check.c ---- */
 
+#define COB_NOT_VALID 0x80000000u
+#define COB_NO_RTR    0x40000000u
+
+/* Transmission types: up to this one by SYNC; 0 at the SYNC after an event. */
+#define TYPE_SYNC_MAX  240
+#define TYPE_EVENT_MIN 254
+
+#define RPDO_PARAMETERS 0x1400
+#define RPDO_MAPPING    0x1600
+#define TPDO_PARAMETERS 0x1800
+#define TPDO_MAPPING    0x1A00
+
+/* Bytes of the longest frame that it takes and sends. */
+unsigned takt_servo_longest_frame(const struct servo *drive);
+/*
+ * The row of a mapping entry, NULL for a dummy. False, and the abort code: there is no such object, of that length, that may
+ * travel this way.
+ */
+bool takt_servo_find_mapped(const struct servo *drive, uint32_t entry, enum object_flag direction,
+                            const struct object_row **row, uint32_t *code);
 void takt_servo_update_pdos(struct servo *drive);
 /* The one that this object, 1400 ... 1BFF, is about. */
 void takt_servo_update_pdo(struct servo *drive, uint16_t index);

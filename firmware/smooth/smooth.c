@@ -3,8 +3,8 @@
 #include "base/assert.h"
 #include "base/maths.h"
 #include "smooth/exact.h"
+#include "smooth/fill.h"
 #include "smooth/head.h"
-#include "smooth/interval.h"
 #include "smooth/piece.h"
 #include "smooth/single.h"
 #include "smooth/worth.h"
@@ -76,37 +76,6 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/* How the rate may change: as the axes allow that move on the route. What others do is nothing to it. */
-static void find_change(const struct smooth *s, double interval_s, struct verifier_change *change)
-{
-    struct smooth_limits limits = s->limits;
-
-    limits.axes &= s->route.moved;
-    takt_smooth_limit(&limits, s->route.tolerance_mm);
-    takt_verifier_change(&limits, interval_s, change);
-}
-
-/* What merging uses of the tolerance makes no interval shorter. */
-static double find_interval(const struct smooth *s)
-{
-    return takt_interval_of(&s->limits, &s->route, s->merge.move.tolerance_mm);
-}
-
-/* The time between samples, and what depends on it; the window is empty. */
-static void set_interval(struct smooth *s)
-{
-    const double interval_s = find_interval(s);
-    TAKT_ASSERT(interval_s > 0.0);
-
-    s->moved = s->route.moved;
-    find_change(s, interval_s, &s->change);
-    s->route.slots.change_per_s = (float)s->change.by;
-    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
-    s->route.chord_per_bend =
-        (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
-    takt_window_init(&s->window, &s->route, interval_s);
-}
-
 /* What merging may use of the tolerance is not there for smoothing. */
 static void begin(struct smooth *s, const struct move *move)
 {
@@ -132,16 +101,6 @@ static void begin(struct smooth *s, const struct move *move)
     s->tried_mm = 0.0;
     s->tried = 0;
     s->merge.open = false;
-}
-
-/* Where the axes stand: whatever ends there, a curve may begin anew. */
-static void begin_anew(struct smooth *s)
-{
-    TAKT_ASSERT(s->open && s->ready == 0);
-    set_interval(s);
-    s->window.count = SMOOTH_FIXED;
-    s->starts = true;
-    s->proved = 0;
 }
 
 /* The newest line will not grow any more. */
@@ -179,95 +138,6 @@ void takt_smooth_finish(struct smooth *s)
         close_merge(s);
         s->finished = true;
     }
-}
-
-/* Is the nominal feed at a place lower because the route is known no farther than so? */
-static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, double known_mm)
-{
-    const struct route_element *e = route_element(&s->route, element);
-    const float ahead = (float)(known_mm - at_mm);
-
-    TAKT_ASSERT(element >= s->route.first && element < s->route.count);
-    return takt_braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
-}
-
-static bool last_feels_end(const struct smooth *s, double known_mm)
-{
-    const unsigned last = s->window.count - 1;
-
-    TAKT_ASSERT(s->window.count > 0);
-    return feels_end(s, s->window.at_mm[last], s->window.element[last], known_mm);
-}
-
-/* Is the end known, or no more of the route can be? */
-static bool is_all_known(const struct smooth *s)
-{
-    return s->finished || !takt_route_has_room(&s->route);
-}
-
-/* The route has gone on since: samples that were slow before its end only, or that end itself, are taken anew. */
-static void forget_end(struct smooth *s)
-{
-    struct window *w = &s->window;
-
-    if (w->count <= SMOOTH_FIXED || !(s->known_mm < takt_route_end(&s->route))) {
-        return;
-    }
-    w->at_end = false;
-    while (w->count > SMOOTH_FIXED && last_feels_end(s, s->known_mm)) {
-        w->count--;
-    }
-}
-
-/* Has an axis begun to move whose ramps are longer, or that must change its rate more slowly? */
-static bool needs_other_interval(struct smooth *s)
-{
-    const bool more = s->moved != s->route.moved;
-    struct verifier_change change;
-
-    s->moved = s->route.moved;
-    if (!more) {
-        return false;
-    }
-    find_change(s, s->window.interval_s, &change);
-    return find_interval(s) > s->window.interval_s || change.by < s->change.by ||
-           change.rounding_s > s->change.rounding_s;
-}
-
-/* Is the route still not known far enough for the place that was tried last? One that has been passed says nothing. */
-static bool is_tried_in_vain(const struct smooth *s)
-{
-    return !is_all_known(s) && s->tried >= s->route.first &&
-           feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route));
-}
-
-/* Fills the window; false when more of the route must be known first. */
-static bool fill(struct smooth *s)
-{
-    struct window *w = &s->window;
-
-    if (s->route.count == 0 || is_tried_in_vain(s)) {
-        return false;
-    }
-    if (w->count == 0) {
-        set_interval(s);
-        takt_window_start(w, &s->route);
-    } else if (s->head.proved == 0 && needs_other_interval(s)) {
-        begin_anew(s);
-    }
-    forget_end(s);
-    const unsigned before = w->count;
-
-    takt_window_extend(w, &s->route);
-    s->tried_mm = w->at_mm[w->count - 1];
-    s->tried = w->element[w->count - 1];
-    if (!is_all_known(s) && (w->at_end || last_feels_end(s, takt_route_end(&s->route)))) {
-        w->count = before;
-        w->at_end = false;
-        return false;
-    }
-    s->known_mm = takt_route_end(&s->route);
-    return true;
 }
 
 static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
@@ -433,7 +303,7 @@ static void choose(struct smooth *s)
         if (takt_worth_path_from_rest(&now, &to_mm) || slower || is_stuck(s)) {
             take_path(s, to_mm);
         }
-    } else if (is_stuck(s) || slower || needs_other_interval(s)) {
+    } else if (is_stuck(s) || slower || takt_fill_needs_other_interval(s)) {
         fall_back(s);
     }
 }
@@ -486,7 +356,7 @@ static void drop_taken(struct smooth *s)
     if (s->stops) {
         takt_window_rest(&s->window, &s->route, &s->order);
         s->stops = false;
-        begin_anew(s);
+        takt_fill_begin_anew(s);
     }
     if (s->window.count > 0) {
         takt_route_forget(&s->route, s->window.at_mm[0]);
@@ -497,7 +367,7 @@ static void drop_taken(struct smooth *s)
 static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 {
     takt_head_keep(&s->head, &s->window, &s->route, s->proved);
-    if (!fill(s)) {
+    if (!takt_fill(s)) {
         return false;
     }
     smooth_window(s, scratch);
@@ -526,7 +396,7 @@ static void end_element(struct smooth *s)
     s->tried = next;
     s->since = (struct worth_since){.element = next};
     takt_order_start(&s->order, w->at_mm[0], next);
-    begin_anew(s);
+    takt_fill_begin_anew(s);
 }
 
 /*

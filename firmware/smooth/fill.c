@@ -1,0 +1,134 @@
+/*
+ * The window is filled with samples along the route, as far as that is known: at an interval that fits the axes that move on it.
+ */
+#include "smooth/fill.h"
+
+#include "base/assert.h"
+#include "smooth/interval.h"
+
+/* How the rate may change: as the axes allow that move on the route. What others do is nothing to it. */
+static void find_change(const struct smooth *s, double interval_s, struct verifier_change *change)
+{
+    struct smooth_limits limits = s->limits;
+
+    limits.axes &= s->route.moved;
+    takt_smooth_limit(&limits, s->route.tolerance_mm);
+    takt_verifier_change(&limits, interval_s, change);
+}
+
+/* What merging uses of the tolerance makes no interval shorter. */
+static double find_interval(const struct smooth *s)
+{
+    return takt_interval_of(&s->limits, &s->route, s->merge.move.tolerance_mm);
+}
+
+/* The time between samples, and what depends on it; the window is empty. */
+static void set_interval(struct smooth *s)
+{
+    const double interval_s = find_interval(s);
+    TAKT_ASSERT(interval_s > 0.0);
+
+    s->moved = s->route.moved;
+    find_change(s, interval_s, &s->change);
+    s->route.slots.change_per_s = (float)s->change.by;
+    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
+    s->route.chord_per_bend =
+        (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
+    takt_window_init(&s->window, &s->route, interval_s);
+}
+
+void takt_fill_begin_anew(struct smooth *s)
+{
+    TAKT_ASSERT(s->open && s->ready == 0);
+    set_interval(s);
+    s->window.count = SMOOTH_FIXED;
+    s->starts = true;
+    s->proved = 0;
+}
+
+/* Is the nominal feed at a place lower because the route is known no farther than so? */
+static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, double known_mm)
+{
+    const struct route_element *e = route_element(&s->route, element);
+    const float ahead = (float)(known_mm - at_mm);
+
+    TAKT_ASSERT(element >= s->route.first && element < s->route.count);
+    return takt_braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
+}
+
+static bool last_feels_end(const struct smooth *s, double known_mm)
+{
+    const unsigned last = s->window.count - 1;
+
+    TAKT_ASSERT(s->window.count > 0);
+    return feels_end(s, s->window.at_mm[last], s->window.element[last], known_mm);
+}
+
+/* Is the end known, or no more of the route can be? */
+static bool is_all_known(const struct smooth *s)
+{
+    return s->finished || !takt_route_has_room(&s->route);
+}
+
+/* The route has gone on since: samples that were slow before its end only, or that end itself, are taken anew. */
+static void forget_end(struct smooth *s)
+{
+    struct window *w = &s->window;
+
+    if (w->count <= SMOOTH_FIXED || !(s->known_mm < takt_route_end(&s->route))) {
+        return;
+    }
+    w->at_end = false;
+    while (w->count > SMOOTH_FIXED && last_feels_end(s, s->known_mm)) {
+        w->count--;
+    }
+}
+
+bool takt_fill_needs_other_interval(struct smooth *s)
+{
+    const bool more = s->moved != s->route.moved;
+    struct verifier_change change;
+
+    s->moved = s->route.moved;
+    if (!more) {
+        return false;
+    }
+    find_change(s, s->window.interval_s, &change);
+    return find_interval(s) > s->window.interval_s || change.by < s->change.by ||
+           change.rounding_s > s->change.rounding_s;
+}
+
+/* Is the route still not known far enough for the place that was tried last? One that has been passed says nothing. */
+static bool is_tried_in_vain(const struct smooth *s)
+{
+    return !is_all_known(s) && s->tried >= s->route.first &&
+           feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route));
+}
+
+bool takt_fill(struct smooth *s)
+{
+    struct window *w = &s->window;
+
+    if (s->route.count == 0 || is_tried_in_vain(s)) {
+        return false;
+    }
+    if (w->count == 0) {
+        set_interval(s);
+        takt_window_start(w, &s->route);
+    } else if (s->head.proved == 0 && takt_fill_needs_other_interval(s)) {
+        takt_fill_begin_anew(s);
+    }
+    forget_end(s);
+    const unsigned before = w->count;
+
+    takt_window_extend(w, &s->route);
+    s->tried_mm = w->at_mm[w->count - 1];
+    s->tried = w->element[w->count - 1];
+    if (!is_all_known(s) && (w->at_end || last_feels_end(s, takt_route_end(&s->route)))) {
+        w->count = before;
+        w->at_end = false;
+        return false;
+    }
+    s->known_mm = takt_route_end(&s->route);
+    return true;
+}

@@ -1,0 +1,16 @@
+/* Inside smooth: the window's samples. */
+#ifndef TAKT_SMOOTH_FILL_H
+#define TAKT_SMOOTH_FILL_H
+
+#include "smooth/smooth.h"
+
+/* Fills the window; false when more of the route must be known first. */
+bool takt_fill(struct smooth *s);
+
+/* Where the axes stand, and nothing is ready: whatever ends there, a curve may begin anew. */
+void takt_fill_begin_anew(struct smooth *s);
+
+/* Has an axis begun to move whose ramps are longer, or that must change its rate more slowly? */
+bool takt_fill_needs_other_interval(struct smooth *s);
+
+#endif
