@@ -35,15 +35,15 @@ double takt_s_curve_integral(double u, double round)
 }
 
 /* T = D/a + a/j where the slope a is reached, D >= a^2/j; else 2 sqrt(D/j). */
-double takt_s_curve_time(double change, double slope, double bend, double *round)
+double takt_s_curve_time(double change, double slope, double second, double *round)
 {
-    TAKT_ASSERT(slope > 0.0 && bend > 0.0);
+    TAKT_ASSERT(slope > 0.0 && second > 0.0);
     *round = 0.5;
-    if (change * bend < slope * slope) {
-        return 2.0 * maths_sqrt(change / bend);
+    if (change * second < slope * slope) {
+        return 2.0 * maths_sqrt(change / second);
     }
-    const double time = change / slope + slope / bend;
+    const double time = change / slope + slope / second;
 
-    *round = slope / bend / time;
+    *round = slope / second / time;
     return time;
 }

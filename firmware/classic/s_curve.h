@@ -11,6 +11,6 @@ double takt_s_curve(double u, double round);
 double takt_s_curve_integral(double u, double round);
 
 /* Shortest time for a change, >= 0, under limits of its slope and the slope's slope; *round of the curve that does it. */
-double takt_s_curve_time(double change, double slope, double bend, double *round);
+double takt_s_curve_time(double change, double slope, double second, double *round);
 
 #endif

@@ -78,15 +78,15 @@ static bool refuse(struct diagnostic *wrong, enum takt_error code, uint8_t axis,
  *
  *     y_0 + t ((y_1 - y_0) / h - h (2 M_0 + M_1) / 6) + t^2 M_0 / 2 + t^3 (M_1 - M_0) / (6 h)
  */
-static void set_piece(const double *knot, const double *value, const double *bend, float c[4])
+static void set_piece(const double *knot, const double *value, const double *second, float c[4])
 {
     const double h = knot[1] - knot[0];
 
     TAKT_ASSERT(h > 0.0);
     c[0] = (float)value[0];
-    c[1] = (float)((value[1] - value[0]) / h - h * (2.0 * bend[0] + bend[1]) / 6.0);
-    c[2] = (float)(0.5 * bend[0]);
-    c[3] = (float)((bend[1] - bend[0]) / (6.0 * h));
+    c[1] = (float)((value[1] - value[0]) / h - h * (2.0 * second[0] + second[1]) / 6.0);
+    c[2] = (float)(0.5 * second[0]);
+    c[3] = (float)((second[1] - second[0]) / (6.0 * h));
 }
 
 /* Column of a correction for a direction. */
@@ -111,7 +111,7 @@ static void set_pieces(struct axis_tables *tables, const struct axis_pair *pair,
     const unsigned up = column_of(table, pair->corrected, TABLE_UP);
     const unsigned down = column_of(table, pair->corrected, TABLE_DOWN);
     double mean[TABLE_KNOTS_MAX], half[TABLE_KNOTS_MAX];
-    double mean_bend[TABLE_KNOTS_MAX], half_bend[TABLE_KNOTS_MAX];
+    double mean_second[TABLE_KNOTS_MAX], half_second[TABLE_KNOTS_MAX];
 
     for (unsigned i = 0; i < pair->points; i++) {
         const float *row = table->value_mm + (size_t)i * table->outputs;
@@ -120,13 +120,13 @@ static void set_pieces(struct axis_tables *tables, const struct axis_pair *pair,
         half[i] = 0.5 * ((double)row[up] - (double)row[down]);
         tables->own_knot_mm[pair->first + i] = table->knot_mm[0][i];
     }
-    takt_spline_set_bends(pair->points, table->knot_mm[0], mean, mean_bend);
-    takt_spline_set_bends(pair->points, table->knot_mm[0], half, half_bend);
+    takt_spline_second_derivatives(pair->points, table->knot_mm[0], mean, mean_second);
+    takt_spline_second_derivatives(pair->points, table->knot_mm[0], half, half_second);
     for (unsigned i = 0; i + 1U < pair->points; i++) {
         struct axis_piece *piece = &tables->own_piece[pair->first + i];
 
-        set_piece(table->knot_mm[0] + i, mean + i, mean_bend + i, piece->mean);
-        set_piece(table->knot_mm[0] + i, half + i, half_bend + i, piece->half);
+        set_piece(table->knot_mm[0] + i, mean + i, mean_second + i, piece->mean);
+        set_piece(table->knot_mm[0] + i, half + i, half_second + i, piece->half);
     }
 }
 

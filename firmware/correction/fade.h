@@ -12,8 +12,8 @@
 
 struct fade {
     double value;
-    double slope; /* change of the value per cycle */
-    double bend;  /* change of the slope per cycle */
+    double slope;  /* change of the value per cycle */
+    double second; /* change of the slope per cycle */
 };
 
 /* How fast a fade is: made once from the time it takes. */
@@ -41,13 +41,13 @@ static inline bool fade_cycle(struct fade *f, double target, const struct fade_p
     const double p = pace->rate;
     const double gap = target - f->value;
 
-    if (maths_abs(gap) + maths_abs(f->slope) + maths_abs(f->bend) <
+    if (maths_abs(gap) + maths_abs(f->slope) + maths_abs(f->second) <
         FADE_NEAR * maths_max(1.0, maths_abs(target))) {
         *f = (struct fade){target, 0.0, 0.0};
         return false;
     }
-    f->bend += p * (p * (p * gap - 3.0 * f->slope) - 3.0 * f->bend);
-    f->slope += f->bend;
+    f->second += p * (p * (p * gap - 3.0 * f->slope) - 3.0 * f->second);
+    f->slope += f->second;
     f->value += f->slope;
     return true;
 }
@@ -55,7 +55,7 @@ static inline bool fade_cycle(struct fade *f, double target, const struct fade_p
 /* Has it come to target? */
 static inline bool fade_is_at(const struct fade *f, double target)
 {
-    return f->value == target && f->slope == 0.0 && f->bend == 0.0;
+    return f->value == target && f->slope == 0.0 && f->second == 0.0;
 }
 
 /* Largest velocity, acceleration and jerk of the value for a target that jumps between 0 and 1 at any times. */

@@ -46,7 +46,7 @@ static void transform_line(float *line, size_t stride, unsigned points)
 {
     double knot[TABLE_KNOTS_MAX] = {0.0};
     double value[TABLE_KNOTS_MAX] = {0.0};
-    double bend[TABLE_KNOTS_MAX];
+    double second[TABLE_KNOTS_MAX];
     const unsigned last = points - 1;
 
     TAKT_ASSERT(points >= 2 && points <= TABLE_KNOTS_MAX);
@@ -54,13 +54,13 @@ static void transform_line(float *line, size_t stride, unsigned points)
         knot[k] = k;
         value[k] = (double)line[(k + 1) * stride];
     }
-    takt_spline_set_bends(points, knot, value, bend);
+    takt_spline_second_derivatives(points, knot, value, second);
     for (unsigned k = 0; k < points; k++) {
-        value[k] -= bend[k] / 6.0;
+        value[k] -= second[k] / 6.0;
         line[(k + 1) * stride] = (float)value[k];
     }
-    line[0] = (float)(2.0 * value[0] - value[1] + bend[0]);
-    line[(points + 1) * stride] = (float)(2.0 * value[last] - value[last - 1] + bend[last]);
+    line[0] = (float)(2.0 * value[0] - value[1] + second[0]);
+    line[(points + 1) * stride] = (float)(2.0 * value[last] - value[last - 1] + second[last]);
 }
 
 /*

@@ -44,13 +44,13 @@ static void close_last(struct row *r)
 }
 
 /* Elimination from the first inner knot to the last, then back (the matrix is tridiagonal). */
-static void solve(unsigned count, const double *knot, const double *value, double *bend)
+static void solve(unsigned count, const double *knot, const double *value, double *second)
 {
     double upper[SPLINE_KNOTS_MAX];
     struct row r;
 
     upper[0] = 0.0;
-    bend[0] = 0.0;
+    second[0] = 0.0;
     for (unsigned i = 1; i + 1 < count; i++) {
         set_row(&r, knot + i, value + i);
         if (i == 1) {
@@ -62,10 +62,10 @@ static void solve(unsigned count, const double *knot, const double *value, doubl
         const double pivot = r.middle - r.lower * upper[i - 1];
 
         upper[i] = r.upper / pivot;
-        bend[i] = (r.right - r.lower * bend[i - 1]) / pivot;
+        second[i] = (r.right - r.lower * second[i - 1]) / pivot;
     }
     for (unsigned i = count - 2; i-- > 1;) {
-        bend[i] -= upper[i] * bend[i + 1];
+        second[i] -= upper[i] * second[i + 1];
     }
 }
 
@@ -74,24 +74,25 @@ static double beyond(double near, double far, double outer, double inner)
     return near + (near - far) * outer / inner;
 }
 
-void takt_spline_set_bends(unsigned count, const double *knot, const double *value, double *bend)
+void takt_spline_second_derivatives(unsigned count, const double *knot, const double *value,
+                                    double *second)
 {
     TAKT_ASSERT(count >= 2 && count <= SPLINE_KNOTS_MAX);
     const unsigned last = count - 1;
 
     if (count == 2) {
-        bend[0] = bend[1] = 0.0;
+        second[0] = second[1] = 0.0;
         return;
     }
     if (count == 3) {
         struct row r;
 
         set_row(&r, knot + 1, value + 1);
-        bend[0] = bend[1] = bend[2] = r.right / (1.5 * r.middle);
+        second[0] = second[1] = second[2] = r.right / (1.5 * r.middle);
         return;
     }
-    solve(count, knot, value, bend);
-    bend[0] = beyond(bend[1], bend[2], knot[1] - knot[0], knot[2] - knot[1]);
-    bend[last] = beyond(bend[last - 1], bend[last - 2], knot[last] - knot[last - 1],
-                        knot[last - 1] - knot[last - 2]);
+    solve(count, knot, value, second);
+    second[0] = beyond(second[1], second[2], knot[1] - knot[0], knot[2] - knot[1]);
+    second[last] = beyond(second[last - 1], second[last - 2], knot[last] - knot[last - 1],
+                          knot[last - 1] - knot[last - 2]);
 }

@@ -12,6 +12,7 @@
  * At the ends the first two and the last two pieces are one cubic each ("not a knot"); three points make a parabola, two
  * a straight line.
  */
-void takt_spline_set_bends(unsigned count, const double *knot, const double *value, double *bend);
+void takt_spline_second_derivatives(unsigned count, const double *knot, const double *value,
+                                    double *second);
 
 #endif

@@ -23,7 +23,7 @@
 #define COMPENSATION_GOUGE_MM 1e-9
 /* Outer corners whose tip is nearer than this to the arc around them stay sharp: they would be specks. */
 #define COMPENSATION_BLUNT_MM 1e-6
-/* Near a turn of 180 degrees by this angle, the bends of both ways decide whether a corner is an inner one. */
+/* Near a turn of 180 degrees by this angle, the curvatures of both ways decide whether a corner is an inner one. */
 #define COMPENSATION_CUSP_RAD 0.05
 /* Nearer than this they alone decide: the directions of a programmed cusp differ by its rounding. */
 #define COMPENSATION_CUSP_SURE_RAD 1e-3

@@ -31,17 +31,17 @@ static bool is_inner(double angle_rad, double left_mm)
 
 /*
  * Where a way returns along itself the directions alone do not tell which side the tool is on: of the two ways, seen
- * from the corner, the one behind it is to the left of the one before when bend before + bend behind > 0. Then the path
- * has turned right. Both must say "outer"; if the directions differ by rounding alone, the bends decide.
+ * from the corner, the one behind it is to the left of the one before when curvature before + curvature behind > 0. Then the path
+ * has turned right. Both must say "outer"; if the directions differ by rounding alone, the curvatures decide.
  */
-static bool cusp_is_inner(double bend, double left_mm, double angle_rad)
+static bool cusp_is_inner(double curvature, double left_mm, double angle_rad)
 {
     const double off_rad = MATHS_PI - maths_abs(angle_rad);
 
-    if (bend == 0.0) {
+    if (curvature == 0.0) {
         return off_rad > COMPENSATION_CUSP_SURE_RAD && is_inner(angle_rad, left_mm);
     }
-    return bend * left_mm < 0.0 ||
+    return curvature * left_mm < 0.0 ||
            (off_rad > COMPENSATION_CUSP_SURE_RAD && is_inner(angle_rad, left_mm));
 }
 
@@ -52,27 +52,27 @@ static double other_way(double angle_rad)
 }
 
 /*
- * Directions that say inner beside bends that say outer: the ways enclose a lens, and then cross. A tool of the radius r that
+ * Directions that say inner beside curvatures that say outer: the ways enclose a lens, and then cross. A tool of the radius r that
  * goes around their corner cuts into it, at the place x from there, by
  *
- *     x off - x^2 (bend + 1 / r) / 2 <= off^2 / (2 (bend + 1 / r))
+ *     x off - x^2 (curvature + 1 / r) / 2 <= off^2 / (2 (curvature + 1 / r))
  */
-static bool is_thin(double bend, double left_mm, double angle_rad)
+static bool is_thin(double curvature, double left_mm, double angle_rad)
 {
     const double off_rad = MATHS_PI - maths_abs(angle_rad);
     const double depth_mm =
-        off_rad * off_rad / (2.0 * (maths_abs(bend) + 1.0 / maths_abs(left_mm)));
+        off_rad * off_rad / (2.0 * (maths_abs(curvature) + 1.0 / maths_abs(left_mm)));
 
-    return bend * left_mm > 0.0 && depth_mm <= COMPENSATION_ROUNDING_MM;
+    return curvature * left_mm > 0.0 && depth_mm <= COMPENSATION_ROUNDING_MM;
 }
 
 static void turn_cusp(const struct cutter_compensation *o, const struct planar *next,
                       struct corner *c)
 {
-    const double bend = takt_planar_bend_to(&o->last) + takt_planar_bend_from(next);
-    const bool inner = cusp_is_inner(bend, c->left_mm, c->angle_rad);
+    const double curvature = takt_planar_curvature_to(&o->last) + takt_planar_curvature_from(next);
+    const bool inner = cusp_is_inner(curvature, c->left_mm, c->angle_rad);
 
-    c->thin = inner && !o->gap && is_thin(bend, c->left_mm, c->angle_rad);
+    c->thin = inner && !o->gap && is_thin(curvature, c->left_mm, c->angle_rad);
     if (inner != is_inner(c->angle_rad, c->left_mm)) {
         c->angle_rad = other_way(c->angle_rad);
     }

@@ -72,7 +72,7 @@ static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, doub
  *
  *     |A B| = |C - A|^2 / (2 (C - A) . u)
  */
-static bool bend_entry(const struct cutter_compensation *o, struct compensation_piece *entry)
+static bool curve_entry(const struct cutter_compensation *o, struct compensation_piece *entry)
 {
     struct planar *way = &entry->live.way;
     double c[2];
@@ -108,7 +108,7 @@ static bool enter(struct cutter_compensation *o, struct compensation_piece *entr
     if (wanted->involute) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_INVOLUTE, entry->item.line, 0.0);
     }
-    if (wanted->arc && !bend_entry(o, entry)) {
+    if (wanted->arc && !curve_entry(o, entry)) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_ARC, entry->item.line, 0.0);
     }
     entry->item.entry = true;

@@ -115,18 +115,18 @@ void takt_planar_tangent_to(const struct planar *c, double result[2])
     }
 }
 
-double takt_planar_bend_from(const struct planar *c)
+double takt_planar_curvature_from(const struct planar *c)
 {
     if (c->involute) {
-        return takt_planar_involute_bend(c, c->unrolled_from);
+        return takt_planar_involute_curvature(c, c->unrolled_from);
     }
     return c->arc ? c->sense / c->radius_from : 0.0;
 }
 
-double takt_planar_bend_to(const struct planar *c)
+double takt_planar_curvature_to(const struct planar *c)
 {
     if (c->involute) {
-        return takt_planar_involute_bend(c, c->unrolled_to);
+        return takt_planar_involute_curvature(c, c->unrolled_to);
     }
     return c->arc ? c->sense / c->radius_to : 0.0;
 }

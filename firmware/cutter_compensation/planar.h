@@ -44,9 +44,9 @@ bool takt_planar_set_involute(struct planar *c, const double from[2], const doub
 void takt_planar_tangent_from(const struct planar *c, double tangent[2]);
 void takt_planar_tangent_to(const struct planar *c, double tangent[2]);
 
-/* How the way bends at its ends: 1 / radius, to the left > 0; a line: 0. */
-double takt_planar_bend_from(const struct planar *c);
-double takt_planar_bend_to(const struct planar *c);
+/* Curvature at its ends, 1 / radius, to the left > 0; a line: 0. */
+double takt_planar_curvature_from(const struct planar *c);
+double takt_planar_curvature_to(const struct planar *c);
 
 /*
  * The same piece moved left by left_mm, which may be negative. False when an arc or an involute would have no radius

@@ -28,7 +28,7 @@
 #define BISECTIONS    60
 #define ANGLES_MAX    4
 #define STEP_MAX_RAD  0.3
-/* Radius of curvature below which a bend counts as that. */
+/* Radius of curvature below which a curve counts as that. */
 #define RADIUS_MIN_MM 1e-9
 
 /* Angles of the string at which a distance may turn. */
@@ -68,7 +68,7 @@ void takt_planar_involute_tangent(const struct planar *c, double unrolled_rad, d
     result[1] *= way_of(c);
 }
 
-double takt_planar_involute_bend(const struct planar *c, double unrolled_rad)
+double takt_planar_involute_curvature(const struct planar *c, double unrolled_rad)
 {
     TAKT_ASSERT(c->involute && c->base_mm > 0.0);
     return way_of(c) * c->hand / maths_max(c->base_mm * unrolled_rad, RADIUS_MIN_MM);

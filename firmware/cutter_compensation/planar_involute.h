@@ -5,7 +5,7 @@
 #include "cutter_compensation/planar.h"
 
 void takt_planar_involute_tangent(const struct planar *c, double unrolled_rad, double result[2]);
-double takt_planar_involute_bend(const struct planar *c, double unrolled_rad);
+double takt_planar_involute_curvature(const struct planar *c, double unrolled_rad);
 /* The same moved left: left of the way, as everywhere. Returns the smaller radius of curvature, negative: none. */
 double takt_planar_involute_offset(struct planar *c, double left_mm);
 double takt_planar_involute_length(const struct planar *c);

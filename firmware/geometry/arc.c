@@ -99,7 +99,7 @@ static double arc_sweep(double from_rad, double to_rad, bool clockwise, bool clo
 }
 
 /* f' L - 1 at an end of the arc. f' L <= 3 at both ends keeps the cubic monotone (Fritsch and Carlson 1980). */
-static double bend(const struct curve *c, double constant_squared, double f)
+static double skew(const struct curve *c, double constant_squared, double f)
 {
     return maths_min(2.0, c->length_mm / speed(c, constant_squared, f) - 1.0);
 }
@@ -112,8 +112,8 @@ static void set_length(struct curve *c)
         c->length_mm = speed(c, constant_squared, 0.0);
     } else {
         c->length_mm = arc_length(c, constant_squared);
-        c->arc.bend_start = bend(c, constant_squared, 0.0);
-        c->arc.bend_end = bend(c, constant_squared, 1.0);
+        c->arc.skew_start = skew(c, constant_squared, 0.0);
+        c->arc.skew_end = skew(c, constant_squared, 1.0);
     }
 }
 
@@ -192,7 +192,7 @@ bool takt_curve_set_arc(struct curve *c, const struct point *start, const struct
 
 static bool is_curved(const struct curve *c)
 {
-    return c->arc.bend_start != 0.0 || c->arc.bend_end != 0.0;
+    return c->arc.skew_start != 0.0 || c->arc.skew_end != 0.0;
 }
 
 /* f, u = s / L */
@@ -201,7 +201,7 @@ static double fraction(const struct curve *c, double u)
     if (!is_curved(c)) {
         return u;
     }
-    return u + u * (1.0 - u) * (c->arc.bend_start * (1.0 - u) - c->arc.bend_end * u);
+    return u + u * (1.0 - u) * (c->arc.skew_start * (1.0 - u) - c->arc.skew_end * u);
 }
 
 /* All but the derivatives of f. */
@@ -215,8 +215,8 @@ static void locate_point(const struct curve *c, double s_mm, struct arc_state *a
 static void arc_locate(const struct curve *c, double s_mm, struct arc_state *a)
 {
     const double u = s_mm / c->length_mm;
-    const double p = c->arc.bend_start;
-    const double q = c->arc.bend_end;
+    const double p = c->arc.skew_start;
+    const double q = c->arc.skew_end;
 
     locate_point(c, s_mm, a);
     a->f1 = (1.0 + p * (1.0 - 4.0 * u + 3.0 * u * u) - q * (2.0 * u - 3.0 * u * u)) / c->length_mm;
@@ -311,11 +311,11 @@ void takt_arc_curvature(const struct curve *c, double s_mm, struct point *k)
  */
 void takt_arc_bound(const struct curve *c, struct curve_bounds *b)
 {
-    const double bends = maths_abs(c->arc.bend_start) + maths_abs(c->arc.bend_end);
+    const double skews = maths_abs(c->arc.skew_start) + maths_abs(c->arc.skew_end);
     const double inverse = 1.0 / c->length_mm;
-    const double f1 = (1.0 + bends) * inverse;
-    const double f2 = 4.0 * bends * inverse * inverse;
-    const double f3 = 6.0 * bends * inverse * inverse * inverse;
+    const double f1 = (1.0 + skews) * inverse;
+    const double f2 = 4.0 * skews * inverse * inverse;
+    const double f3 = 6.0 * skews * inverse * inverse * inverse;
     const double w = maths_abs(c->arc.sweep_rad);
     const double d = maths_abs(c->arc.radius_change_mm);
     const double rw =

@@ -33,9 +33,9 @@ struct curve_arc {
     double radius_change_mm; /* radius at the end minus radius at the start */
     double angle_start_rad;  /* of the radius vector at s = 0 */
     double sweep_rad;        /* signed, counter-clockwise > 0, several turns allowed */
-    /* f(s) = u + u (1 - u) (bend_start (1 - u) - bend_end u), u = s / length: 0 for a true circle. */
-    double bend_start;
-    double bend_end;
+    /* f(s) = u + u (1 - u) (skew_start (1 - u) - skew_end u), u = s / length: 0 for a true circle. */
+    double skew_start;
+    double skew_end;
 };
 
 /*
@@ -91,7 +91,7 @@ struct curve {
     };
 };
 
-/* How sharply a curve bends at most, for limits: bounds on derivatives by s, over the whole curve. */
+/* How sharply a curve turns at most, for limits: bounds on derivatives by s, over the whole curve. */
 struct curve_bounds {
     double first[AXIS_COUNT];  /* max |dx_i/ds| */
     double second[AXIS_COUNT]; /* max |d2x_i/ds2|, 1/mm */

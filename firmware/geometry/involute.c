@@ -308,13 +308,13 @@ void takt_involute_tangent(const struct curve *c, double s_mm, struct point *t)
 }
 
 /* Curvature q^2 / (r phi), q the plane's share of the length; it changes by q^3 / (r^2 phi^3). */
-struct involute_bending takt_involute_bend(const struct curve *c, double s_mm)
+struct involute_curvature takt_involute_curvature_change(const struct curve *c, double s_mm)
 {
     const struct curve_involute *i = &c->involute;
     const double phi = maths_max(takt_involute_unrolled(c, s_mm), UNROLLED_MIN_RAD);
     const double per_mm = i->plane_ratio / (i->radius_mm * phi);
 
-    return (struct involute_bending){
+    return (struct involute_curvature){
         .curvature_1_mm = i->plane_ratio * per_mm,
         .change_1_mm2 = i->plane_ratio * per_mm * per_mm / phi,
     };
@@ -324,7 +324,7 @@ struct involute_bending takt_involute_bend(const struct curve *c, double s_mm)
 void takt_involute_curvature(const struct curve *c, double s_mm, struct point *k)
 {
     const struct curve_involute *i = &c->involute;
-    const double curvature = takt_involute_bend(c, s_mm).curvature_1_mm;
+    const double curvature = takt_involute_curvature_change(c, s_mm).curvature_1_mm;
     double sine;
     double cosine;
 
@@ -338,17 +338,18 @@ void takt_involute_curvature(const struct curve *c, double s_mm, struct point *k
 static void bound_plane(const struct curve *c, struct curve_bounds *b, int axis)
 {
     const struct curve_involute *i = &c->involute;
-    const struct involute_bending bend = takt_involute_bend(c, i->outward ? 0.0 : c->length_mm);
+    const struct involute_curvature at_end =
+        takt_involute_curvature_change(c, i->outward ? 0.0 : c->length_mm);
 
     b->first[axis] = i->plane_ratio;
     if (i->cusp_start || i->cusp_end) {
         b->second[axis] = b->third[axis] = MATHS_INFINITY;
         return;
     }
-    b->second[axis] = bend.curvature_1_mm;
-    b->third[axis] = bend.curvature_1_mm * bend.curvature_1_mm / i->plane_ratio;
-    b->radius_min_mm = 1.0 / bend.curvature_1_mm;
-    b->third_across = bend.change_1_mm2;
+    b->second[axis] = at_end.curvature_1_mm;
+    b->third[axis] = at_end.curvature_1_mm * at_end.curvature_1_mm / i->plane_ratio;
+    b->radius_min_mm = 1.0 / at_end.curvature_1_mm;
+    b->third_across = at_end.change_1_mm2;
 }
 
 void takt_involute_bound(const struct curve *c, struct curve_bounds *b)

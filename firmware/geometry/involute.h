@@ -19,8 +19,8 @@
 
 #include "geometry/curve.h"
 
-/* How an involute bends at one place, and how fast that changes. */
-struct involute_bending {
+/* The curvature of an involute at one place, and how fast that changes. */
+struct involute_curvature {
     double curvature_1_mm; /* |d2x/ds2| */
     double change_1_mm2;   /* |d curvature / d s| */
 };
@@ -33,7 +33,7 @@ double takt_involute_piece_end(const struct curve *c, double from_mm);
 void takt_involute_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece);
 
 /* Finite on the base circle too: then far above what any machine can follow. */
-struct involute_bending takt_involute_bend(const struct curve *c, double s_mm);
+struct involute_curvature takt_involute_curvature_change(const struct curve *c, double s_mm);
 
 /* Angle unrolled at s, >= 0. */
 double takt_involute_unrolled(const struct curve *c, double s_mm);

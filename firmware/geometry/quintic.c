@@ -23,7 +23,7 @@
 
 #define DEGREE 5U
 
-/* A straight piece bends by rounding: curvature (1/mm) below which nobody feels it. */
+/* A straight piece is curved by rounding: curvature (1/mm) below which nobody feels it. */
 #define STRAIGHT_1_MM 1e-9
 
 /* Steps of halving until a place is exact. */
@@ -47,7 +47,8 @@ static void coefficients(const struct curve *c, unsigned i, double k[DEGREE])
     }
 }
 
-static void set_axis(struct curve *c, unsigned i, const double tangent[2], const double bend[2])
+static void set_axis(struct curve *c, unsigned i, const double tangent[2],
+                     const double curvature[2])
 {
     const unsigned axis = axis_of(c, i);
     const double d = c->end.at[axis] - c->start.at[axis];
@@ -55,12 +56,13 @@ static void set_axis(struct curve *c, unsigned i, const double tangent[2], const
     const double square = 0.5 * l * l;
     double *k = c->quintic.coefficient_mm[i];
 
-    k[0] = square * bend[0];
-    k[1] =
-        10.0 * d - l * (6.0 * tangent[0] + 4.0 * tangent[1]) - square * (3.0 * bend[0] - bend[1]);
+    k[0] = square * curvature[0];
+    k[1] = 10.0 * d - l * (6.0 * tangent[0] + 4.0 * tangent[1]) -
+           square * (3.0 * curvature[0] - curvature[1]);
     k[2] = -15.0 * d + l * (8.0 * tangent[0] + 7.0 * tangent[1]) +
-           square * (3.0 * bend[0] - 2.0 * bend[1]);
-    k[3] = 6.0 * d - l * (3.0 * tangent[0] + 3.0 * tangent[1]) - square * (bend[0] - bend[1]);
+           square * (3.0 * curvature[0] - 2.0 * curvature[1]);
+    k[3] = 6.0 * d - l * (3.0 * tangent[0] + 3.0 * tangent[1]) -
+           square * (curvature[0] - curvature[1]);
 }
 
 bool takt_curve_set_quintic(struct curve *c, const struct point *start, const struct point *end,
@@ -117,16 +119,16 @@ void takt_quintic_tangent(const struct curve *c, double s_mm, struct point *t)
     }
 }
 
-void takt_quintic_curvature(const struct curve *c, double s_mm, struct point *bend)
+void takt_quintic_curvature(const struct curve *c, double s_mm, struct point *curvature)
 {
     const double u = s_mm / c->length_mm;
 
-    memset(bend, 0, sizeof(*bend));
+    memset(curvature, 0, sizeof(*curvature));
     for (unsigned i = 0; i < 2; i++) {
         double k[DEGREE];
 
         coefficients(c, i, k);
-        bend->at[axis_of(c, i)] =
+        curvature->at[axis_of(c, i)] =
             (((20.0 * k[4] * u + 12.0 * k[3]) * u + 6.0 * k[2]) * u + 2.0 * k[1]) /
             (c->length_mm * c->length_mm);
     }
@@ -211,7 +213,7 @@ static double product_max(double a[][2], unsigned n, double b[][2], unsigned m, 
 
 /*
  * Along and across count by the direction, which x' has but for its length q, nearly 1: both are divided by the least q. As
- * parts of the whole they are never above it: so a piece that hardly bends, or whose bend only changes, has sane ratios.
+ * parts of the whole they are never above it: so a piece that is hardly curved, or whose curvature only changes, has sane ratios.
  */
 void takt_quintic_bound(const struct curve *c, struct curve_bounds *b)
 {

@@ -21,16 +21,17 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
     if (c0 == c1 && c1 == c2 && c2 == c3) {
         return;
     }
-    const double bend = (c0 - c1) + (c2 - c1);
+    const double second = (c0 - c1) + (c2 - c1);
     const double half = 0.5 * inverse_mm;
-    const double bend_end = (c1 - c2) + (c3 - c2);
+    const double second_end = (c1 - c2) + (c3 - c2);
 
     c->spline.moves |= (unsigned char)(1U << i);
-    c->start.at[i] = c1 + bend * (1.0 / 6.0);
-    c->end.at[i] = c2 + bend_end * (1.0 / 6.0);
+    c->start.at[i] = c1 + second * (1.0 / 6.0);
+    c->end.at[i] = c2 + second_end * (1.0 / 6.0);
     c->slope.at[i] = (c2 - c0) * half;
-    c->spline.square.at[i] = bend * (half * inverse_mm);
-    c->spline.cube.at[i] = (bend_end - bend) * (inverse_mm * inverse_mm * inverse_mm * (1.0 / 6.0));
+    c->spline.square.at[i] = second * (half * inverse_mm);
+    c->spline.cube.at[i] =
+        (second_end - second) * (inverse_mm * inverse_mm * inverse_mm * (1.0 / 6.0));
 }
 
 /*
@@ -83,17 +84,17 @@ void takt_spline_curvature(const struct curve *c, double s_mm, struct point *k)
 void takt_spline_bound(const struct curve *c, struct curve_bounds *b)
 {
     struct point tangent;
-    struct point bend;
+    struct point second;
 
     memset(b, 0, sizeof(*b));
     takt_spline_tangent(c, c->length_mm, &tangent);
-    takt_spline_curvature(c, c->length_mm, &bend);
+    takt_spline_curvature(c, c->length_mm, &second);
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double third = 6.0 * maths_abs(c->spline.cube.at[i]);
         const double ends = maths_max(maths_abs(c->slope.at[i]), maths_abs(tangent.at[i]));
 
         b->first[i] = ends + third * c->length_mm * c->length_mm / 8.0;
-        b->second[i] = maths_max(2.0 * maths_abs(c->spline.square.at[i]), maths_abs(bend.at[i]));
+        b->second[i] = maths_max(2.0 * maths_abs(c->spline.square.at[i]), maths_abs(second.at[i]));
         b->third[i] = third;
     }
 }

@@ -5,7 +5,7 @@
 
 /* Parts of what a cycle may use that the way to rest is reckoned with. */
 #define WAY_CHANGE 0.95
-#define WAY_BEND   0.85
+#define WAY_SECOND 0.85
 
 /* Halvings of what a cycle may change the change by. */
 #define HALVINGS 10
@@ -15,7 +15,7 @@
 #define HOP_MAX     64.0
 
 /* Part of what the change may change by that a landing uses at most. */
-#define LANDING_BEND 0.95
+#define LANDING_SECOND 0.95
 
 static double change_max(const struct rate *r)
 {
@@ -23,7 +23,7 @@ static double change_max(const struct rate *r)
     return r->limits.change * (1.0 - r->limits.kept * HALT_RATE * HALT_RATE);
 }
 
-static double bend_max(const struct rate *r)
+static double second_max(const struct rate *r)
 {
     return r->limits.room * (1.0 - r->limits.kept * HALT_RATE * HALT_RATE * HALT_RATE);
 }
@@ -31,12 +31,13 @@ static double bend_max(const struct rate *r)
 bool takt_halt_is_possible(const struct rate *r)
 {
     return r->now <= HALT_RATE && maths_abs(r->change) <= change_max(r) &&
-           (r->change >= 0.0 || r->now >= 0.5 * r->change * r->change / (WAY_BEND * bend_max(r)));
+           (r->change >= 0.0 ||
+            r->now >= 0.5 * r->change * r->change / (WAY_SECOND * second_max(r)));
 }
 
 double takt_halt_way(const struct rate *r)
 {
-    const double m = WAY_BEND * bend_max(r);
+    const double m = WAY_SECOND * second_max(r);
     const double t = r->change / m;
     const double high = r->now + 0.5 * r->change * t;
     const double c = maths_min(WAY_CHANGE * change_max(r), maths_sqrt(m * high));
@@ -47,28 +48,28 @@ double takt_halt_way(const struct rate *r)
     return high > 0.0 ? begun + 0.5 * high * (high / c + c / m) : 0.0;
 }
 
-/* A cycle in which the change changes by bend; returns how far it leads. */
-static double bend_by(struct rate *r, double bend)
+/* A cycle in which the change changes by second; returns how far it leads. */
+static double change_by(struct rate *r, double second)
 {
     const double before = r->now;
 
-    r->now = maths_max(r->now + r->change + 0.5 * bend, 0.0);
-    r->change += bend;
-    return 0.5 * (before + r->now) - bend / 12.0;
+    r->now = maths_max(r->now + r->change + 0.5 * second, 0.0);
+    r->change += second;
+    return 0.5 * (before + r->now) - second / 12.0;
 }
 
-static bool fits(const struct rate *r, double bend, double way)
+static bool fits(const struct rate *r, double second, double way)
 {
     struct rate next = *r;
-    const double here = bend_by(&next, bend);
+    const double here = change_by(&next, second);
 
     return here + takt_halt_way(&next) <= way;
 }
 
-/* The largest bend up to most from which the rest of the way is enough; no less than braking to the rate 0 needs. */
-static double find_bend(const struct rate *r, double most, double way)
+/* The largest second difference up to most from which the rest of the way is enough; no less than braking to the rate 0 needs. */
+static double find_second(const struct rate *r, double most, double way)
 {
-    double low = takt_rate_bend(r, 0.0, bend_max(r), change_max(r));
+    double low = takt_rate_second(r, 0.0, second_max(r), change_max(r));
     double high = most;
 
     if (high <= low || fits(r, high, way)) {
@@ -89,7 +90,7 @@ static double find_bend(const struct rate *r, double most, double way)
 /* The rate is so near to what it is to be that one cycle leads there, from where the way is enough. */
 static bool settles(struct rate *r, double to, double way, double *here)
 {
-    const double m = bend_max(r);
+    const double m = second_max(r);
     struct rate next = *r;
 
     takt_rate_set(&next, to);
@@ -141,7 +142,7 @@ static double curve_at(const struct halt_curve *l, struct rate *r, double t)
 static bool is_good(const struct halt_curve *l, const struct rate *r, double n)
 {
     const double most =
-        LANDING_BEND * r->limits.room * (1.0 - r->limits.kept * r->now * r->now * r->now);
+        LANDING_SECOND * r->limits.room * (1.0 - r->limits.kept * r->now * r->now * r->now);
     const double begin = 6.0 * l->a3;
     const double end = begin + (24.0 * l->a4 + 60.0 * l->a5 * n) * n;
     double middle = begin;
@@ -161,7 +162,7 @@ static double hop_cycles(const struct rate *r, double to, double way)
 {
     const double by_change = maths_sqrt(5.7735027 * way / change_max(r));
     const double n = takt_maths_ceil(maths_max(
-        maths_max(takt_maths_cbrt(60.0 * way / bend_max(r)), by_change), 1.875 * way / to));
+        maths_max(takt_maths_cbrt(60.0 * way / second_max(r)), by_change), 1.875 * way / to));
 
     TAKT_ASSERT(to > 0.0 && way >= 0.0);
     return n <= HOP_MAX ? maths_max(n, 1.0) : 0.0;
@@ -228,5 +229,5 @@ double takt_halt_step(struct halt *h, struct rate *r, double to, double way)
     if (settles(r, to, way, &here)) {
         return here;
     }
-    return bend_by(r, find_bend(r, takt_rate_bend(r, to, bend_max(r), change_max(r)), way));
+    return change_by(r, find_second(r, takt_rate_second(r, to, second_max(r), change_max(r)), way));
 }

@@ -64,8 +64,8 @@ static double landing_change(double way, double change, double room)
 }
 
 /* The cycle that changes the rate towards to, by at most room and to a change of at most most. */
-static double bend_towards(const struct rate *r, double to, double room, double landing,
-                           double most)
+static double second_towards(const struct rate *r, double to, double room, double landing,
+                             double most)
 {
     const double sign = to > r->now ? 1.0 : -1.0;
     const double way = maths_abs(to - r->now);
@@ -74,9 +74,9 @@ static double bend_towards(const struct rate *r, double to, double room, double 
     return maths_clamp(sign * wanted - r->change, -room, room);
 }
 
-double takt_rate_bend(const struct rate *r, double to, double room, double most)
+double takt_rate_second(const struct rate *r, double to, double room, double most)
 {
-    return bend_towards(r, to, room, room, most);
+    return second_towards(r, to, room, room, most);
 }
 
 double takt_rate_step(struct rate *r, double to)
@@ -94,12 +94,12 @@ double takt_rate_step(struct rate *r, double to)
         r->change = 0.0;
         return 0.5 * (before + to);
     }
-    const double bend =
-        bend_towards(r, to, room, landing, l->change * (1.0 - l->kept * high * high));
+    const double second =
+        second_towards(r, to, room, landing, l->change * (1.0 - l->kept * high * high));
 
-    r->now = maths_clamp(r->now + r->change + 0.5 * bend, 0.0, 1.0);
-    r->change += bend;
-    return before + 0.5 * (r->now - before) - bend / 12.0;
+    r->now = maths_clamp(r->now + r->change + 0.5 * second, 0.0, 1.0);
+    r->change += second;
+    return before + 0.5 * (r->now - before) - second / 12.0;
 }
 
 /* Along |r'| = L (1 - k r^2): the integral of r dr / (L (1 - k r^2)) is -ln(1 - k) / (2 L k). */

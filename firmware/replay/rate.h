@@ -47,7 +47,7 @@ void takt_rate_set(struct rate *r, double to);
 double takt_rate_step(struct rate *r, double to);
 
 /* How much the change changes in a cycle on the way to the rate to: by room at most, and to a change of most at most. */
-double takt_rate_bend(const struct rate *r, double to, double room, double most);
+double takt_rate_second(const struct rate *r, double to, double room, double most);
 
 /* How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most. */
 double takt_rate_brake_cycles(const struct rate *r);

@@ -9,7 +9,7 @@
 #define INVERSE_STEPS 16
 
 /*
- * In a piece of unit length the slope differs from that of its chord by |M| / 2 at most, M the greater bend of its ends; a
+ * In a piece of unit length the slope differs from that of its chord by |M| / 2 at most, M the greater second derivative at its ends; a
  * table that is read 0.2 steps beyond its end (edge.h) by another 0.2 1.2 |M|.
  */
 static bool is_flat(const struct pitch *pitch)
@@ -17,9 +17,9 @@ static bool is_flat(const struct pitch *pitch)
     const double most_mm = PITCH_STEEPEST_RATIO / maths_abs(pitch->steps_per_mm);
     for (unsigned i = 0; i + 1 < pitch->points; i++) {
         const double chord_mm = maths_abs(pitch->value_mm[i + 1] - pitch->value_mm[i]);
-        const double bend_mm =
-            maths_max(maths_abs(pitch->bend_mm[i]), maths_abs(pitch->bend_mm[i + 1]));
-        if (!(chord_mm + 0.74 * bend_mm <= most_mm))
+        const double second_mm =
+            maths_max(maths_abs(pitch->second_mm[i]), maths_abs(pitch->second_mm[i + 1]));
+        if (!(chord_mm + 0.74 * second_mm <= most_mm))
             return false;
     }
     return true;
@@ -32,7 +32,7 @@ bool takt_pitch_make(struct pitch *pitch)
     for (unsigned i = 0; i < pitch->points; i++)
         knot[i] = i;
     if (pitch->points >= 2) {
-        takt_spline_set_bends(pitch->points, knot, pitch->value_mm, pitch->bend_mm);
+        takt_spline_second_derivatives(pitch->points, knot, pitch->value_mm, pitch->second_mm);
         if (is_flat(pitch))
             return true;
     }
@@ -51,8 +51,8 @@ double takt_pitch_at(const struct pitch *pitch, double motor_mm)
     const unsigned last = pitch->points - 2;
     const unsigned i = at < 1 ? 0 : at >= last ? last : (unsigned)at;
     const double s = at - i, r = 1 - s;
-    const double *value = pitch->value_mm + i, *bend = pitch->bend_mm + i;
-    return r * value[0] + s * value[1] - r * s * ((1 + r) * bend[0] + (1 + s) * bend[1]) / 6;
+    const double *value = pitch->value_mm + i, *second = pitch->second_mm + i;
+    return r * value[0] + s * value[1] - r * s * ((1 + r) * second[0] + (1 + s) * second[1]) / 6;
 }
 
 /* y = x - K(y), again and again: each time PITCH_STEEPEST_RATIO as far off. */

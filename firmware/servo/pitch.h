@@ -21,10 +21,10 @@ struct pitch {
     double first_mm; /* where the motor is at the first point */
     double steps_per_mm;
     double value_mm[DRIVE_PITCH_POINTS];
-    double bend_mm[DRIVE_PITCH_POINTS]; /* second derivative, by steps */
+    double second_mm[DRIVE_PITCH_POINTS]; /* second derivative, by steps */
 };
 
-/* All but the bends is set. False: it is steeper than PITCH_STEEPEST_RATIO anywhere, or too short; it has no points then. */
+/* All but the second derivatives is set. False: it is steeper than PITCH_STEEPEST_RATIO anywhere, or too short; it has no points then. */
 bool takt_pitch_make(struct pitch *pitch);
 
 /* x = y + K(y): what K is where the motor says y. */

@@ -101,8 +101,8 @@ static void test_tangents_and_bends(void)
     expect_point(tangent, 0.0, -1.0);
     takt_planar_tangent_to(&c, tangent);
     expect_point(tangent, 1.0, 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, takt_planar_bend_to(&c));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, takt_planar_bend_from(&c));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, takt_planar_curvature_to(&c));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, takt_planar_curvature_from(&c));
 }
 
 static void test_two_lines_cross_once_and_parallels_never(void)

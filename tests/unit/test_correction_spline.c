@@ -40,7 +40,7 @@ static void test_a_cubic_through_uneven_points_is_reproduced(void)
 
     for (unsigned i = 0; i < 6; i++)
         value[i] = cubic(knot[i]);
-    takt_spline_set_bends(6, knot, value, bend);
+    takt_spline_second_derivatives(6, knot, value, bend);
     for (int i = 0; i <= 600; i++) {
         const double x = -2 + 0.01 * i;
 
@@ -55,7 +55,7 @@ static void test_a_cubic_through_four_points_is_reproduced(void)
 
     for (unsigned i = 0; i < 4; i++)
         value[i] = cubic(knot[i]);
-    takt_spline_set_bends(4, knot, value, bend);
+    takt_spline_second_derivatives(4, knot, value, bend);
     for (int i = 0; i <= 400; i++) {
         const double x = 0.01 * i;
 
@@ -68,10 +68,10 @@ static void test_three_points_make_a_parabola_and_two_a_line(void)
     const double knot[] = {0, 1, 4}, value[] = {1, 0, 9}; /* (x - 1)^2 */
     double bend[3];
 
-    takt_spline_set_bends(3, knot, value, bend);
+    takt_spline_second_derivatives(3, knot, value, bend);
     for (unsigned i = 0; i < 3; i++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-13, 2.0, bend[i]);
-    takt_spline_set_bends(2, knot, value, bend);
+    takt_spline_second_derivatives(2, knot, value, bend);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bend[0]);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bend[1]);
 }
@@ -82,7 +82,7 @@ static void test_a_spline_is_continuous_with_two_derivatives(void)
     const double value[] = {0, 5, -3, 4, 4, -6, 2};
     double bend[7];
 
-    takt_spline_set_bends(7, knot, value, bend);
+    takt_spline_second_derivatives(7, knot, value, bend);
     for (unsigned i = 1; i < 6; i++) {
         const double d = 1e-4, x = knot[i];
         const double y[5] = {spline_at(7, knot, value, bend, x - 2 * d),

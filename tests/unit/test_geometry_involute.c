@@ -128,11 +128,11 @@ static void test_derivatives_are_those_of_the_points(void)
             TEST_ASSERT_DOUBLE_WITHIN(1e-7, (t1.at[a] - t0.at[a]) / (2 * h), k.at[a]);
         }
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, maths_sqrt(t.at[0] * t.at[0] + t.at[1] * t.at[1]));
-        const double change = (takt_involute_bend(&c, s + h).curvature_1_mm -
-                               takt_involute_bend(&c, s - h).curvature_1_mm) /
+        const double change = (takt_involute_curvature_change(&c, s + h).curvature_1_mm -
+                               takt_involute_curvature_change(&c, s - h).curvature_1_mm) /
                               (2 * h);
 
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, change, takt_involute_bend(&c, s).change_1_mm2);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, change, takt_involute_curvature_change(&c, s).change_1_mm2);
     }
 }
 
@@ -140,7 +140,7 @@ static void test_derivatives_are_those_of_the_points(void)
 static void test_the_junction_with_the_circle_keeps_curvature_and_not_its_derivative(void)
 {
     const struct curve c = page_curve(ROUGH_BASE, 0.0, ROUGH_PHI, 0.0, 1.0);
-    const struct involute_bending bend = takt_involute_bend(&c, c.length_mm);
+    const struct involute_curvature bend = takt_involute_curvature_change(&c, c.length_mm);
     struct curve circle;
     struct point t0, t1, k0, k1;
 
@@ -328,8 +328,8 @@ static void check_pieces(const struct curve *c, unsigned pieces_max)
         TEST_ASSERT_TRUE(distance(&p, &at) < 1e-10);
         takt_curve_point(&piece, piece.length_mm, &p);
         TEST_ASSERT_TRUE(distance(&p, &piece.end) < 1e-10);
-        const double k0 = takt_involute_bend(&piece, 0.0).curvature_1_mm;
-        const double k1 = takt_involute_bend(&piece, piece.length_mm).curvature_1_mm;
+        const double k0 = takt_involute_curvature_change(&piece, 0.0).curvature_1_mm;
+        const double k1 = takt_involute_curvature_change(&piece, piece.length_mm).curvature_1_mm;
         const bool cusp = takt_curve_starts_at_cusp(&piece) || takt_curve_ends_at_cusp(&piece);
 
         TEST_ASSERT_TRUE(cusp || maths_max(k0, k1) <= maths_min(k0, k1) * 1.2500001);
