@@ -111,6 +111,19 @@ struct translator {
     size_t label_room;
 };
 
+/* Dialects that have something in common, as bits. */
+#define TRANSLATE_GRBL        (1U << DIALECT_GRBL)
+#define TRANSLATE_MARLIN      (1U << DIALECT_MARLIN)
+#define TRANSLATE_MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
+#define TRANSLATE_SIEMENS     (1U << DIALECT_SIEMENS)
+#define TRANSLATE_INDUSTRY    (TRANSLATE_MACROS | 1U << DIALECT_MACH3)
+#define TRANSLATE_NOT_FOREIGN (1U << DIALECT_LINUXCNC)
+
+static inline bool translate_is(const struct translator *t, unsigned dialects)
+{
+    return ((1U << t->dialect) & dialects) != 0;
+}
+
 /* Tells of a word that is left out, once for each. */
 void translate_note(struct translator *t, const struct line_word *w, const char *meaning);
 
@@ -132,6 +145,15 @@ void names_begin(struct translator *t);
 
 /* @ and ^ as X and Y. */
 void polar_translate(struct translator *t);
+
+/* Plane and distances, which later lines are understood by. */
+void motion_follow_modes(struct translator *t);
+/* G28 and G30, whose axes are named alone or are distances. */
+void motion_translate_reference(struct translator *t);
+/* G53 goes at rapid where no motion is in effect; what was before a cycle stays what goes on behind it. */
+void motion_translate_machine(struct translator *t);
+/* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
+void motion_translate(struct translator *t);
 
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
