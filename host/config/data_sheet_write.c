@@ -29,9 +29,9 @@ static bool receive_nothing(void *context, struct can_frame *frame)
 /* The drive as it is at power-on. */
 static enum command_status write_eds(const struct virtual_drive_config *config, const char *path)
 {
-    static struct virtual_drive drive;
+    static _Thread_local struct virtual_drive drive;
     static const struct can_port nowhere = {.send = send_nowhere, .receive = receive_nothing};
-    static struct output_file file;
+    static _Thread_local struct output_file file;
     const char *slash = strrchr(path, '/');
 
     if (!output_file_open(&file, path))
