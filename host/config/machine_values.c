@@ -17,7 +17,7 @@ struct value_place {
     const struct machine_key *key;
     double scale; /* value in the setup per value in the file */
     bool is_rotary;
-    char letter; /* of the axis, in its section */
+    unsigned axis; /* of an axis' section */
 };
 
 struct value_type {
@@ -74,8 +74,7 @@ static struct value_place place_of(const struct machine_setup *setup, struct mac
     return (struct value_place){.key = key,
                                 .scale = scale_of(setup, place, key),
                                 .is_rotary = machine_place_is_rotary(setup, place),
-                                .letter =
-                                    place.index < AXIS_COUNT ? AXIS_LETTERS[place.index] : '\0'};
+                                .axis = place.index};
 }
 
 /* ---- numbers ---- */
@@ -311,7 +310,8 @@ static bool read_axis_type(const struct value_place *at, void *field, const char
     (void)field;
     if (strcmp(value, expected) == 0)
         return true;
-    machine_problem_say(wrong, "type: axis %c is %s, not '%.40s'", at->letter, expected, value);
+    machine_problem_say(wrong, "type: axis %c is %s, not '%.40s'", AXIS_LETTERS[at->axis], expected,
+                        value);
     return false;
 }
 
