@@ -155,6 +155,16 @@ void motion_translate_machine(struct translator *t);
 /* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
 void motion_translate(struct translator *t);
 
+/* Words that only the code in front of them can mean: not F, S, T and the axes. */
+#define TRANSLATE_OWN_WORDS "dehijklpqruvw"
+
+/* What becomes of a word by what the machine file declares it as. */
+void declared_use(struct translator *t, struct line_word *w, const struct dialect_code *code);
+/* U, V or W. */
+bool declared_is_letter(const struct line_word *w);
+
+/* Takes a code and its own words out of the line. */
+void codes_drop(struct translator *t, struct line_word *w);
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
 /* What the machine file declares a word as; NULL: nothing. */
