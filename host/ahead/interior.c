@@ -306,8 +306,8 @@ static double longest(double v, double dv, double so_far)
     return dv < 0 ? maths_min(so_far, -v / dv) : so_far;
 }
 
-/* One direction; how far slacks and multipliers may go along it. */
-static void direction(struct interior *w, double mu, bool again, double *primal, double *dual)
+/* The right side of the Newton step: the slope, and what the rows ask for. */
+static void set_right(struct interior *w, double mu, bool again)
 {
     const struct problem *p = w->problem;
 
@@ -331,38 +331,51 @@ static void direction(struct interior *w, double mu, bool again, double *primal,
         image_transpose(p, i, &z, v, b);
         scatter(w, b, i, w->right);
     }
+}
+
+/* How slacks and multipliers of a cell change with dz, and how far they may. */
+static void follow_step(struct interior *w, size_t cell, double mu, bool again, double *primal,
+                        double *dual)
+{
+    const struct problem *p = w->problem;
+    double x[IMAGE_UNKNOWNS];
+    double dx[IMAGE_UNKNOWNS];
+    double product[ROWS_MAX];
+    struct image image;
+    struct image step;
+
+    gather(w, w->z, cell, x);
+    gather(w, w->dz, cell, dx);
+    const struct rows_at z = image_of(p, cell, x, &image);
+    const struct rows_at dz = image_of(p, cell, dx, &step);
+
+    rows_product(p, cell, &z, &dz, product);
+    for (int j = 0; j < w->rows; j++) {
+        struct row *row = &w->row[cell][j];
+        double with_s;
+        double with_t;
+
+        targets(row, mu, again, &with_s, &with_t);
+        row->dm = row->w * (asked(row, with_s, with_t) + product[j]);
+        row->ds = (with_s - row->s * row->dm) / row->m;
+        row->dt = (with_t + row->t * row->dm) / (PRICE - row->m);
+        *primal = longest(row->s, row->ds, *primal);
+        *primal = longest(row->t, row->dt, *primal);
+        *dual = longest(row->m, row->dm, *dual);
+        *dual = longest(PRICE - row->m, -row->dm, *dual);
+    }
+}
+
+/* One direction; how far slacks and multipliers may go along it. */
+static void direction(struct interior *w, double mu, bool again, double *primal, double *dual)
+{
+    set_right(w, mu, again);
     memcpy(w->dz, w->right, w->each * w->free * sizeof *w->dz);
     band_solve(w->band, w->width, w->each * w->free, w->dz);
     *primal = 1;
     *dual = 1;
-    for (size_t i = 0; i < p->cells; i++) {
-        double x[IMAGE_UNKNOWNS];
-        double dx[IMAGE_UNKNOWNS];
-        double product[ROWS_MAX];
-        struct image image;
-        struct image step;
-
-        gather(w, w->z, i, x);
-        gather(w, w->dz, i, dx);
-        const struct rows_at z = image_of(p, i, x, &image);
-        const struct rows_at dz = image_of(p, i, dx, &step);
-
-        rows_product(p, i, &z, &dz, product);
-        for (int j = 0; j < w->rows; j++) {
-            struct row *row = &w->row[i][j];
-            double with_s;
-            double with_t;
-
-            targets(row, mu, again, &with_s, &with_t);
-            row->dm = row->w * (asked(row, with_s, with_t) + product[j]);
-            row->ds = (with_s - row->s * row->dm) / row->m;
-            row->dt = (with_t + row->t * row->dm) / (PRICE - row->m);
-            *primal = longest(row->s, row->ds, *primal);
-            *primal = longest(row->t, row->dt, *primal);
-            *dual = longest(row->m, row->dm, *dual);
-            *dual = longest(PRICE - row->m, -row->dm, *dual);
-        }
-    }
+    for (size_t i = 0; i < w->problem->cells; i++)
+        follow_step(w, i, mu, again, primal, dual);
 }
 
 /* The mean product after a step. */

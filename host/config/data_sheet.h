@@ -4,11 +4,15 @@
 #ifndef TAKT_HOST_DATA_SHEET_H
 #define TAKT_HOST_DATA_SHEET_H
 
+#include "cli/status.h"
 #include "config/machine_setup.h"
 #include "drives/virtual_drives.h"
 
 /* False after a message. */
 bool data_sheet_load(struct dictionary *dictionary, const char *path);
+
+/* Into a folder: a file for every drive. As a file: of the first drive; another maker's is not written over. */
+enum command_status data_sheet_write(const struct virtual_drives_config *drives, const char *path);
 
 /*
  * All virtual drives of a machine: those of its axes on CAN, the second ones of gantries, I/O nodes; sheet: memory for

@@ -14,28 +14,32 @@
 /* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
 #define TEXT(section, name, offset, size, meaning)                                                 \
     {                                                                                              \
-        section, name, KEY_TEXT, SCALE_NONE, offset, size, 0, 0, false, meaning                    \
+        section, name, KEY_TEXT, SCALE_NONE, offset, size, 0, 0, false, meaning, NULL              \
     }
 #define COUNT(section, name, type, offset, from, to, meaning)                                      \
     {                                                                                              \
-        section, name, type, SCALE_NONE, offset, 0, from, to, false, meaning                       \
+        section, name, type, SCALE_NONE, offset, 0, from, to, false, meaning, NULL                 \
     }
 #define FROM(section, name, scale, offset, from, to, meaning)                                      \
     {                                                                                              \
-        section, name, KEY_DOUBLE, scale, offset, 0, from, to, false, meaning                      \
+        section, name, KEY_DOUBLE, scale, offset, 0, from, to, false, meaning, NULL                \
     }
 #define ABOVE(section, name, scale, offset, from, to, meaning)                                     \
     {                                                                                              \
-        section, name, KEY_DOUBLE, scale, offset, 0, from, to, true, meaning                       \
+        section, name, KEY_DOUBLE, scale, offset, 0, from, to, true, meaning, NULL                 \
     }
 
 #define VECTOR(section, name, scale, offset, count, from, to, meaning)                             \
     {                                                                                              \
-        section, name, KEY_VECTOR, scale, offset, count, from, to, false, meaning                  \
+        section, name, KEY_VECTOR, scale, offset, count, from, to, false, meaning, NULL            \
     }
 #define CHOICE(section, name, type, offset, meaning)                                               \
     {                                                                                              \
-        section, name, type, SCALE_NONE, offset, 0, 0, 0, false, meaning                           \
+        section, name, type, SCALE_NONE, offset, 0, 0, 0, false, meaning, NULL                     \
+    }
+#define WORD(section, name, words, offset, meaning)                                                \
+    {                                                                                              \
+        section, name, KEY_WORD, SCALE_NONE, offset, 0, 0, 0, false, meaning, words                \
     }
 #define OF_CORRECTION(name, scale, field, count, meaning)                                          \
     VECTOR(SECTION_CORRECTION, name, scale, IN_SETUP(machine.correction.field), count, -1e6, 1e6,  \
@@ -82,6 +86,16 @@ const char *const machine_section_names[SECTION_COUNT] = {
     "machine",  "axis",  "spindle", "bus", "panel", "correction",
     "geometry", "drive", "stepper", "io",  "gantry"};
 
+/* Words, in the order of the enumeration they stand for. */
+static const char *const drive_types[] = {"can", "step", NULL};
+static const char *const step_forms[] = {"even", "improved", "plain", NULL};
+static const char *const shapers[] = {"none", "neutral", "zv", "mzv", "ei", NULL};
+static const char *const interpolators[] = {"exact", "integrate", "rotate", NULL};
+static const char *const profiles[] = {"jerk", "smooth", "gentle", NULL};
+static const char *const landings[] = {"span", "block", "scale", NULL};
+static const char *const limiters[] = {"ceiling", "threshold", "smooth", NULL};
+static const char *const override_methods[] = {"adaptive", "proportional", NULL};
+
 /* clang-format off */
 const struct machine_key machine_keys[] = {
     TEXT(SECTION_MACHINE, "name", IN_SETUP(machine.name), MACHINE_NAME_MAX + 1,
@@ -96,26 +110,26 @@ const struct machine_key machine_keys[] = {
           MACHINE_LOOK_AHEAD_MAX, "blocks planned ahead"),
     COUNT(SECTION_MACHINE, "sharp_corners", KEY_UINT32, IN_SETUP(machine.sharp_corners), 0, 1,
           "outer corners of compensated contours (G41, G42): 1 sharp, 0 rounded"),
-    CHOICE(SECTION_MACHINE, "law", KEY_RAMP_PROFILE, IN_SETUP(machine.profile),
-           "rounding of ramps: jerk (the fastest), smooth (jerk continuous) or gentle (its derivative too)"),
-    CHOICE(SECTION_MACHINE, "landing", KEY_LANDING, IN_SETUP(machine.landing),
-           "span: a cycle falls on stops and slow joints exactly; block: on every block's end; for comparison scale: by a factor on the feed, which steps at junctions"),
-    CHOICE(SECTION_MACHINE, "limiter", KEY_LIMITER, IN_SETUP(machine.limiter),
-           "how axis velocities are limited above 100 %: ceiling (planned); for comparison threshold or smooth: a factor on the feed, a cycle late"),
-    CHOICE(SECTION_MACHINE, "override_method", KEY_OVERRIDE_METHOD, IN_SETUP(machine.override_proportional),
-           "adaptive: the override scales the programmed feed; proportional: every feed"),
-    CHOICE(SECTION_MACHINE, "interpolator", KEY_INTERPOLATOR, IN_SETUP(machine.interpolator),
-           "exact; for comparison integrate (lines by digital integration) or rotate (arcs by rotating the radius vector)"),
+    WORD(SECTION_MACHINE, "law", profiles, IN_SETUP(machine.profile),
+         "rounding of ramps: jerk (the fastest), smooth (jerk continuous) or gentle (its derivative too)"),
+    WORD(SECTION_MACHINE, "landing", landings, IN_SETUP(machine.landing),
+         "span: a cycle falls on stops and slow joints exactly; block: on every block's end; for comparison scale: by a factor on the feed, which steps at junctions"),
+    WORD(SECTION_MACHINE, "limiter", limiters, IN_SETUP(machine.limiter),
+         "how axis velocities are limited above 100 %: ceiling (planned); for comparison threshold or smooth: a factor on the feed, a cycle late"),
+    WORD(SECTION_MACHINE, "override_method", override_methods, IN_SETUP(machine.override_proportional),
+         "adaptive: the override scales the programmed feed; proportional: every feed"),
+    WORD(SECTION_MACHINE, "interpolator", interpolators, IN_SETUP(machine.interpolator),
+         "exact; for comparison integrate (lines by digital integration) or rotate (arcs by rotating the radius vector)"),
     COUNT(SECTION_MACHINE, "interpolator_word_bits", KEY_UINT8, IN_SETUP(machine.interpolator_word_bits),
           INTERPOLATOR_WORD_BITS_MIN, INTERPOLATOR_WORD_BITS_MAX, "integrate: bits of a signed word for positions over the travel"),
     COUNT(SECTION_MACHINE, "interpolator_end_shift", KEY_UINT8, IN_SETUP(machine.interpolator_end_shift), 0,
           INTERPOLATOR_END_SHIFT_MAX, "integrate: k of N = 2^k, the cycles that share what is left at the end of a line"),
     COUNT(SECTION_MACHINE, "interpolator_angle_bits", KEY_UINT8, IN_SETUP(machine.interpolator_angle_bits), 0,
           INTERPOLATOR_ANGLE_BITS_MAX, "rotate: bits of a cycle's angle, of which the largest is that of the axes' full feed; 6 to 8 as the source has it; 0: any angle"),
-    CHOICE(SECTION_MACHINE, "shaper", KEY_SHAPER, IN_SETUP(shaper),
-           "setpoints that do not make the modes of geometry.mode_x swing: none; zv; neutral (the tool keeps its way closer, for some more time); for comparison mzv or ei"),
-    CHOICE(SECTION_MACHINE, "step_form", KEY_STEP_FORM, IN_SETUP(machine.step_form),
-           "pulses of step drives: even (each axis at its own times); by evaluation functions improved or plain (one axis at a time)"),
+    WORD(SECTION_MACHINE, "shaper", shapers, IN_SETUP(shaper),
+         "setpoints that do not make the modes of geometry.mode_x swing: none; zv; neutral (the tool keeps its way closer, for some more time); for comparison mzv or ei"),
+    WORD(SECTION_MACHINE, "step_form", step_forms, IN_SETUP(machine.step_form),
+         "pulses of step drives: even (each axis at its own times); by evaluation functions improved or plain (one axis at a time)"),
     ABOVE(SECTION_MACHINE, "tool_change_s", SCALE_NONE, IN_SETUP(machine.tool_change_s), 0, 3600,
           "longest change of the tool (M6) by a changer at I/O nodes"),
     TEXT(SECTION_MACHINE, "chain", IN_SETUP(chain), CHAIN_TEXT_MAX,
@@ -153,8 +167,8 @@ const struct machine_key machine_keys[] = {
          "velocity unit of its drive (60FF, 6099), accelerations the same in a second: where it is rpm, 60 / travel of a turn; 0: increments_per_mm"),
     FROM(SECTION_AXIS, "following_error_max_mm", SCALE_LENGTH, IN_AXIS(following_error_max_mm), 0, 1e6,
          "alarm of the controller beyond this lag; 0: not watched"),
-    CHOICE(SECTION_AXIS, "drive_type", KEY_DRIVE_TYPE, IN_AXIS(drive_type),
-           "can: a CiA 402 drive on the bus; step: pulses of a step/direction output"),
+    WORD(SECTION_AXIS, "drive_type", drive_types, IN_AXIS(drive_type),
+         "can: a CiA 402 drive on the bus; step: pulses of a step/direction output"),
     ABOVE(SECTION_AXIS, "steps_per_mm", SCALE_PER_LENGTH, IN_AXIS(steps_per_mm), 0, 1e9,
           "steps of a step drive"),
     ABOVE(SECTION_AXIS, "step_rate_max_hz", SCALE_NONE, IN_AXIS(step_rate_max_hz), 0, 1e7,

@@ -26,26 +26,19 @@ enum machine_section {
 
 enum machine_key_type {
     KEY_TEXT,
+    KEY_WORD, /* one of struct machine_key.words: its place among them is the value */
     KEY_UINT32,
     KEY_UINT8,
     KEY_INT8,
     KEY_DOUBLE,
-    KEY_VECTOR /* size numbers */,
+    KEY_VECTOR, /* size numbers */
     KEY_AXIS,
     KEY_LINEAR_AXIS,
     KEY_LAYERS,
-    KEY_OUTPUTS,
-    KEY_INPUTS, /* what the bits of an I/O node are */
+    KEY_OUTPUTS, /* what the bits of an I/O node are */
+    KEY_INPUTS,
     KEY_ANALOGUES,
-    KEY_AXIS_TYPE,
-    KEY_DRIVE_TYPE,
-    KEY_STEP_FORM,
-    KEY_SHAPER,
-    KEY_RAMP_PROFILE,
-    KEY_LANDING,
-    KEY_LIMITER,
-    KEY_OVERRIDE_METHOD,
-    KEY_INTERPOLATOR /* words */
+    KEY_AXIS_TYPE
 };
 
 /* How a value in a file becomes one of the setup for a rotary axis, whose keys end in _deg instead of _mm. */
@@ -70,6 +63,7 @@ struct machine_key {
     double min, max; /* in the unit of the file */
     bool above_min;  /* min itself is not allowed */
     const char *meaning;
+    const char *const *words; /* of KEY_WORD, by their enumeration; ends with NULL */
 };
 
 /* Numbers of a vector. */
@@ -93,6 +87,12 @@ struct machine_place {
 struct machine_problem {
     char text[MACHINE_PROBLEM_MAX + 1];
 };
+
+__attribute__((format(printf, 2, 3))) void machine_problem_say(struct machine_problem *wrong,
+                                                               const char *format, ...);
+
+/* Angles instead of lengths are what its keys count. */
+bool machine_place_is_rotary(const struct machine_setup *setup, struct machine_place place);
 
 /*
  * Finds a section: word "axis", instance "X"; word "drive", instance "1" (a node some axis has); else the word alone,

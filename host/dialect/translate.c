@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AXES LINE_AXES
 /* A dwell written without a point is in milliseconds from here on: nobody waits for less than that, or for minutes. */
 #define DWELL_MS_MIN  100.0
 #define LINE_TEXT_MAX 2304
@@ -53,18 +52,6 @@ void translate_message(struct translator *t, const char *text, size_t length)
         *c = (char)(*c == '(' ? '[' : *c == ')' ? ']' : *c);
     translate_add(&t->behind, "(msg,%s)", shown);
 }
-
-static bool is(const struct translator *t, unsigned dialects)
-{
-    return ((1U << t->dialect) & dialects) != 0;
-}
-
-#define GRBL        (1U << DIALECT_GRBL)
-#define MARLIN      (1U << DIALECT_MARLIN)
-#define MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
-#define SIEMENS     (1U << DIALECT_SIEMENS)
-#define INDUSTRY    (MACROS | 1U << DIALECT_MACH3)
-#define NOT_FOREIGN (1U << DIALECT_LINUXCNC)
 
 /* ---- whole lines ---- */
 
@@ -137,7 +124,8 @@ static void translate_start(struct translator *t)
             l->text[i] = ' ';
         (void)line_read(l, l->text, l->length);
     }
-    if (l->text[0] == '/' && l->text[1] >= '1' && l->text[1] <= '9' && is(t, MACROS)) {
+    if (l->text[0] == '/' && l->text[1] >= '1' && l->text[1] <= '9' &&
+        translate_is(t, TRANSLATE_MACROS)) {
         l->text[1] = ' ';
         (void)line_read(l, l->text, l->length);
     }
@@ -188,69 +176,6 @@ static void bracket_assignment(struct line *l)
     (void)line_read(l, text, (size_t)length);
 }
 
-/* ---- modes that later words are understood by ---- */
-
-static void follow_modes(struct translator *t)
-{
-    struct line *l = &t->line;
-    static const char across[] = {'k', 'j', 'i'};
-
-    for (unsigned plane = 0; plane < 3; plane++) {
-        if (line_find_code(l, 'g', 170 + 10 * plane) != NULL)
-            t->across = across[plane];
-    }
-    if (line_find_code(l, 'g', 900) != NULL)
-        t->incremental = false;
-    if (line_find_code(l, 'g', 910) != NULL)
-        t->incremental = true;
-}
-
-/*
- * Behind a cycle G0 or G1 is in effect again, as it was before it. What is executed before is the text before, as long as
- * there are no jumps and calls.
- */
-static void go_on_behind_cycle(struct translator *t, bool motion, bool other)
-{
-    struct line *l = &t->line;
-    const bool elsewhere = t->survey.jumps || (l->words > 0 && l->word[0].letter == 'o') ||
-                           line_find_code(l, 'm', 980) != NULL;
-
-    if (!motion && !other && t->ended_cycle && t->straight != NULL && line_has_axis(l) &&
-        is(t, INDUSTRY)) {
-        (void)line_append(l, t->straight);
-        t->ended_cycle = false;
-    }
-    if (elsewhere || line_find_code(l, 'g', 20) != NULL || line_find_code(l, 'g', 30) != NULL)
-        t->straight = NULL;
-    else if (line_find_code(l, 'g', 0) != NULL || line_find_code(l, 'g', 10) != NULL)
-        t->straight = line_find_code(l, 'g', 0) != NULL ? "G0" : "G1";
-    t->ended_cycle = line_ends_cycle(l) || (t->ended_cycle && !motion);
-}
-
-/* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
-static void translate_motion(struct translator *t)
-{
-    bool motion;
-    bool other;
-
-    line_look_for_motion(&t->line, &motion, &other);
-    go_on_behind_cycle(t, motion, other);
-    if (line_has_axis(&t->line) && !motion && !other &&
-        (t->motion_is_owed || (is(t, GRBL) && !t->has_motion && line_is_plain(&t->line)))) {
-        (void)line_append(&t->line, "G0");
-        motion = true;
-    }
-    t->has_motion = t->has_motion || motion;
-    t->motion_is_owed = t->motion_is_owed && !motion;
-}
-
-/* G53 goes at rapid where no motion is in effect; what was before a cycle stays what goes on behind it. */
-static void translate_bare_machine(struct translator *t)
-{
-    if (is(t, INDUSTRY) && (!t->has_motion || t->ended_cycle) && line_is_bare_machine(&t->line))
-        (void)line_append(&t->line, "G0");
-}
-
 /* M6 of a program that never says which tool: somebody changes it. */
 static void translate_change(struct translator *t)
 {
@@ -290,7 +215,8 @@ static void translate_unused(struct translator *t)
     if (p != NULL && p->kind == WORD_VALUE && line_find_code(l, 'm', 60) != NULL &&
         line_find_code(l, 'g', 40) == NULL)
         line_blank(l, p);
-    for (unsigned i = 1; i < l->words && (l->word[0].letter == 'n' || is(t, MACROS)); i++) {
+    for (unsigned i = 1;
+         i < l->words && (l->word[0].letter == 'n' || translate_is(t, TRANSLATE_MACROS)); i++) {
         if (l->word[i].kind == WORD_VALUE && l->word[i].letter == 'n')
             line_blank(l, &l->word[i]);
     }
@@ -308,73 +234,6 @@ static void translate_arc(struct translator *t)
         centres += line_find(l, *c, 0) != NULL ? 1U : 0U;
     if (w != NULL && w->is_number && w->value == 0.0 && centres > 1)
         line_blank(l, w);
-}
-
-/* ---- reference ---- */
-
-/* An axis that is named, whatever its value: it goes there straight. */
-static bool make_bare(struct translator *t, struct line_word *w)
-{
-    const bool counts = w->kind == WORD_BARE || is(t, MARLIN);
-    char text[] = "x0";
-
-    if (strchr(AXES, w->letter) == NULL || w->letter == ' ' || !counts)
-        return false;
-    text[0] = t->line.text[w->begin];
-    (void)line_replace(&t->line, w, text);
-    return true;
-}
-
-/* U V W are distances along X Y Z. */
-static bool make_distance(struct line *l, struct line_word *w)
-{
-    if (w->kind != WORD_VALUE || (w->letter != 'u' && w->letter != 'v' && w->letter != 'w'))
-        return false;
-    l->text[w->begin] = (char)(w->letter - 'u' + 'X');
-    return line_read(l, l->text, l->length);
-}
-
-static void set_incremental(struct translator *t)
-{
-    struct line *l = &t->line;
-    struct line_word *absolute = line_find_code(l, 'g', 900);
-
-    if (absolute != NULL)
-        line_blank(l, absolute);
-    if (t->incremental || line_find_code(l, 'g', 910) != NULL)
-        return;
-    (void)line_append(l, "G91");
-    translate_add(&t->behind, "G90");
-}
-
-static void drop_motion(struct translator *t)
-{
-    for (unsigned number = 0; number <= 10; number += 10) {
-        struct line_word *w = line_find_code(&t->line, 'g', number);
-
-        if (w != NULL && line_has_axis(&t->line)) {
-            line_blank(&t->line, w);
-            t->motion_is_owed = number == 0;
-        }
-    }
-}
-
-static void translate_reference(struct translator *t)
-{
-    struct line *l = &t->line;
-    bool relative = false;
-
-    if (line_find_code(l, 'g', 280) == NULL && line_find_code(l, 'g', 300) == NULL)
-        return;
-    for (unsigned i = 0; i < l->words; i++) {
-        if (make_bare(t, &l->word[i]) || (is(t, MACROS) && make_distance(l, &l->word[i])))
-            relative = true;
-        else if (l->word[i].kind == WORD_BARE)
-            line_blank(l, &l->word[i]);
-    }
-    drop_motion(t);
-    if (relative)
-        set_incremental(t);
 }
 
 /* ---- words ---- */
@@ -400,17 +259,18 @@ static void translate_dwell(struct translator *t)
         struct line_word *w = &l->word[i];
 
         if (w->kind == WORD_VALUE && w->is_number &&
-            strchr(is(t, MARLIN) ? "s" : "xu", w->letter) != NULL) {
+            strchr(translate_is(t, TRANSLATE_MARLIN) ? "s" : "xu", w->letter) != NULL) {
             set_value(l, w, 'P', w->value);
             return;
         }
     }
-    if (p == NULL && dwells && is(t, MARLIN)) { /* until all has moved, as everything here does */
+    if (p == NULL && dwells &&
+        translate_is(t, TRANSLATE_MARLIN)) { /* until all has moved, as everything here does */
         line_blank(l, line_find_code(l, 'g', 40));
         return;
     }
     if (p != NULL && p->is_number && !p->has_point &&
-        (p->value >= DWELL_MS_MIN || (is(t, MARLIN) && dwells)))
+        (p->value >= DWELL_MS_MIN || (translate_is(t, TRANSLATE_MARLIN) && dwells)))
         set_value(l, p, 'P', 1e-3 * p->value);
 }
 
@@ -418,15 +278,15 @@ static void translate_dwell(struct translator *t)
 
 static void translate_foreign(struct translator *t)
 {
-    if (is(t, SIEMENS))
+    if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_translate(t);
     translate_start(t);
-    if (is(t, MARLIN))
+    if (translate_is(t, TRANSLATE_MARLIN))
         printer_leave_macro(t);
     translate_numbers(t);
     names_begin(t);
     names_translate(t);
-    if (is(t, MACROS)) {
+    if (translate_is(t, TRANSLATE_MACROS)) {
         bracket_assignment(&t->line);
         if (t->survey.lathe)
             turning_translate(t);
@@ -439,11 +299,11 @@ static void translate_foreign(struct translator *t)
     codes_translate(t);
     translate_unused(t);
     translate_change(t);
-    if (is(t, MARLIN))
+    if (translate_is(t, TRANSLATE_MARLIN))
         printer_translate(t);
-    if (is(t, MACROS | MARLIN))
+    if (translate_is(t, TRANSLATE_MACROS | TRANSLATE_MARLIN))
         translate_dwell(t);
-    if (is(t, MACROS)) {
+    if (translate_is(t, TRANSLATE_MACROS)) {
         upright_translate(t);
         holes_translate(t);
         if (t->survey.lathe && t->dialect == DIALECT_FANUC)
@@ -452,11 +312,11 @@ static void translate_foreign(struct translator *t)
         lathe_translate(t);
     }
     registers_translate_speed(t);
-    follow_modes(t);
-    translate_reference(t);
+    motion_follow_modes(t);
+    motion_translate_reference(t);
     translate_arc(t);
-    translate_bare_machine(t);
-    translate_motion(t);
+    motion_translate_machine(t);
+    motion_translate(t);
 }
 
 /* All lines that one has become, the first without DIALECT_GOES_ON. */
@@ -496,8 +356,8 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
     globals_begin(t);
     values_translate(t);
     polar_translate(t);
-    if (is(t, NOT_FOREIGN)) {
-        follow_modes(t);
+    if (translate_is(t, TRANSLATE_NOT_FOREIGN)) {
+        motion_follow_modes(t);
         codes_translate(t);
     } else {
         translate_foreign(t);
@@ -557,13 +417,14 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     t->source_length = length;
     t->across = 'k';
     each_line(t, bytes, length, guess_line);
-    t->absolute = !is(t, NOT_FOREIGN) && dialect_guess_end(&t->detector).absolute;
-    if (is(t, MACROS))
+    t->absolute =
+        !translate_is(t, TRANSLATE_NOT_FOREIGN) && dialect_guess_end(&t->detector).absolute;
+    if (translate_is(t, TRANSLATE_MACROS))
         each_line(t, bytes, length, survey_line);
     if (t->survey.lathe)
         t->across = 'j';
     each_line(t, bytes, length, translate_line);
-    if (is(t, SIEMENS))
+    if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_finish(t);
     (void)flow_finish(t);
     dialect_text_free(&t->before);

@@ -111,6 +111,19 @@ struct translator {
     size_t label_room;
 };
 
+/* Dialects that have something in common, as bits. */
+#define TRANSLATE_GRBL        (1U << DIALECT_GRBL)
+#define TRANSLATE_MARLIN      (1U << DIALECT_MARLIN)
+#define TRANSLATE_MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
+#define TRANSLATE_SIEMENS     (1U << DIALECT_SIEMENS)
+#define TRANSLATE_INDUSTRY    (TRANSLATE_MACROS | 1U << DIALECT_MACH3)
+#define TRANSLATE_NOT_FOREIGN (1U << DIALECT_LINUXCNC)
+
+static inline bool translate_is(const struct translator *t, unsigned dialects)
+{
+    return ((1U << t->dialect) & dialects) != 0;
+}
+
 /* Tells of a word that is left out, once for each. */
 void translate_note(struct translator *t, const struct line_word *w, const char *meaning);
 
@@ -133,6 +146,25 @@ void names_begin(struct translator *t);
 /* @ and ^ as X and Y. */
 void polar_translate(struct translator *t);
 
+/* Plane and distances, which later lines are understood by. */
+void motion_follow_modes(struct translator *t);
+/* G28 and G30, whose axes are named alone or are distances. */
+void motion_translate_reference(struct translator *t);
+/* G53 goes at rapid where no motion is in effect; what was before a cycle stays what goes on behind it. */
+void motion_translate_machine(struct translator *t);
+/* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
+void motion_translate(struct translator *t);
+
+/* Words that only the code in front of them can mean: not F, S, T and the axes. */
+#define TRANSLATE_OWN_WORDS "dehijklpqruvw"
+
+/* What becomes of a word by what the machine file declares it as. */
+void declared_use(struct translator *t, struct line_word *w, const struct dialect_code *code);
+/* U, V or W. */
+bool declared_is_letter(const struct line_word *w);
+
+/* Takes a code and its own words out of the line. */
+void codes_drop(struct translator *t, struct line_word *w);
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
 /* What the machine file declares a word as; NULL: nothing. */

@@ -1,194 +1,20 @@
 /*
- * Electronic data sheets, as they are written by many tools: keys in any case, spaces anywhere, numbers decimal or
- * hexadecimal, $NODEID before or behind a sum, arrays in full or compact (CiA 306, 4.6).
+ * A dictionary of an electronic data sheet: numbers decimal or hexadecimal, $NODEID before or behind a sum, arrays in full or
+ * compact (CiA 306, 4.6).
  */
 #include "drives/dictionary_read.h"
-#include "drives/dictionary_words.h"
+#include "drives/dictionary_sections.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* An index by itself, as a sub-index; the same for what a compact array says of each. */
-#define WHOLE (-1)
-
-#define COMPACT_MAX 254
-
 /* Types of CiA 301 beside those of object_table.h. */
 #define TYPE_BOOLEAN 1
 #define TYPE_REAL32  8
 
-enum key {
-    KEY_NAME,
-    KEY_KIND,
-    KEY_TYPE,
-    KEY_ACCESS,
-    KEY_DEFAULT,
-    KEY_VALUE,
-    KEY_LOW,
-    KEY_HIGH,
-    KEY_MAPPING,
-    KEY_COMPACT,
-    KEY_COUNT
-};
-
-static const char *const key_names[KEY_COUNT] = {
-    "parametername",  "objecttype", "datatype",  "accesstype", "defaultvalue",
-    "parametervalue", "lowlimit",   "highlimit", "pdomapping", "compactsubobj"};
-
-/* A section that describes an entry. */
-struct section {
-    uint16_t index;
-    int sub;
-    unsigned line;
-    bool has_values; /* [1600Value]: its keys are numbers of sub-indices */
-    struct text_part key[KEY_COUNT];
-};
-
-/* A default of a compact array. */
-struct compact_value {
-    uint32_t place; /* index << 8 | sub */
-    struct text_part text;
-};
-
-struct reader {
-    struct section *section;
-    unsigned count, capacity;
-    struct compact_value *value;
-    unsigned values, value_capacity;
-    uint8_t dummies;
-    bool in_dummies;
-    bool is_configuration; /* a DCF: a drive as its maker's tool has set it up */
-    bool has_section;
-    struct dictionary_problem *wrong;
-};
-
-/* The same memory with room for one more, perhaps elsewhere; NULL: there is none, and the old stays. */
-static void *grow(void *memory, unsigned count, unsigned *capacity, size_t size)
-{
-    if (count < *capacity)
-        return memory;
-    unsigned more = *capacity == 0 ? 256 : 2 * *capacity;
-    void *grown = realloc(memory, more * size);
-    if (grown != NULL)
-        *capacity = more;
-    return grown;
-}
-
-/* ---- Sections and keys ---- */
-
-/* "6040", "6099sub1", "1600Value". */
-static bool read_section_name(struct text_part name, struct section *section)
-{
-    unsigned index, sub;
-    size_t at = words_read_hex(name, 4, &index);
-    struct text_part rest = {name.start + at, name.length - at};
-    const struct text_part word = {rest.start, rest.length < 3 ? rest.length : 3};
-    if (at != 4)
-        return false;
-    section->index = (uint16_t)index;
-    section->sub = WHOLE;
-    section->has_values = words_are(rest, "value");
-    if (rest.length == 0 || section->has_values)
-        return true;
-    if (!words_are(word, "sub"))
-        return false;
-    rest.start += 3;
-    rest.length -= 3;
-    at = words_read_hex(rest, 2, &sub);
-    section->sub = (int)sub;
-    return at > 0 && at == rest.length;
-}
-
-static bool begin_section(struct reader *r, struct text_part name, unsigned line)
-{
-    struct section section = {.line = line};
-    r->in_dummies = words_are(name, "dummyusage");
-    /* CiA 306 spells it with one m. */
-    r->is_configuration = r->is_configuration || words_are(name, "devicecomissioning") ||
-                          words_are(name, "devicecommissioning");
-    r->has_section = read_section_name(name, &section);
-    if (!r->has_section)
-        return true;
-    struct section *grown = grow(r->section, r->count, &r->capacity, sizeof *grown);
-    if (grown == NULL)
-        return false;
-    r->section = grown;
-    r->section[r->count++] = section;
-    return true;
-}
-
-static bool take_compact_value(struct reader *r, const struct section *section,
-                               struct text_part key, struct text_part value)
-{
-    long sub = words_plain_number(key, 0);
-    if (sub < 1 || sub > COMPACT_MAX)
-        return true;
-    struct compact_value *grown = grow(r->value, r->values, &r->value_capacity, sizeof *grown);
-    if (grown == NULL)
-        return false;
-    r->value = grown;
-    r->value[r->values++] =
-        (struct compact_value){(uint32_t)section->index << 8 | (uint32_t)sub, value};
-    return true;
-}
-
-/* "Dummy0007=1" */
-static void take_dummy(struct reader *r, struct text_part key, struct text_part value)
-{
-    const struct text_part word = {key.start, key.length < 5 ? key.length : 5};
-    unsigned type;
-    if (!words_are(word, "dummy") || words_plain_number(value, 0) == 0)
-        return;
-    if (words_read_hex((struct text_part){key.start + 5, key.length - 5}, 4, &type) > 0 && type < 8)
-        r->dummies |= (uint8_t)(1u << type);
-}
-
-static bool take_pair(struct reader *r, struct text_part key, struct text_part value)
-{
-    if (r->in_dummies)
-        take_dummy(r, key, value);
-    if (!r->has_section)
-        return true;
-    struct section *section = &r->section[r->count - 1];
-    if (section->has_values)
-        return take_compact_value(r, section, key, value);
-    for (unsigned k = 0; k < KEY_COUNT; k++)
-        if (words_are(key, key_names[k]))
-            section->key[k] = value;
-    return true;
-}
-
-static bool take_line(struct reader *r, struct text_part line, unsigned number)
-{
-    const char *equals = line.length > 0 ? memchr(line.start, '=', line.length) : NULL;
-    if (line.length == 0 || *line.start == ';' || *line.start == '#')
-        return true;
-    if (*line.start == '[' && line.start[line.length - 1] == ']')
-        return begin_section(r, words_trim(line.start + 1, line.length - 2), number);
-    if (equals == NULL)
-        return true;
-    return take_pair(r, words_trim(line.start, (size_t)(equals - line.start)),
-                     words_trim(equals + 1, line.length - (size_t)(equals - line.start) - 1));
-}
-
-static bool read_lines(struct reader *r, const char *text, size_t length)
-{
-    size_t at = 0;
-    for (unsigned number = 1; at < length; number++) {
-        const char *end = memchr(text + at, '\n', length - at);
-        size_t line = end ? (size_t)(end - text) - at : length - at;
-        if (!take_line(r, words_trim(text + at, line), number))
-            return false;
-        at += line + 1;
-    }
-    return true;
-}
-
-/* ---- From sections to rows ---- */
-
 struct builder {
-    const struct reader *reader;
+    const struct dictionary_sections *reader;
     struct object_row *row;
     unsigned count, capacity;
     char *names;
@@ -196,27 +22,10 @@ struct builder {
     size_t extra; /* bytes of memory that is no object of takt's own drive */
 };
 
-static bool is_hidden(const struct section *section)
-{
-    return section->has_values;
-}
-
-static int compare_sections(const void *a, const void *b)
-{
-    const struct section *x = a, *y = b;
-    if (x->index != y->index)
-        return x->index < y->index ? -1 : 1;
-    if (is_hidden(x) != is_hidden(y))
-        return is_hidden(x) ? 1 : -1;
-    if (x->sub != y->sub)
-        return x->sub < y->sub ? -1 : 1;
-    return x->line < y->line ? -1 : 1;
-}
-
 /* Numbers of one, two or four bytes are such; all else is told as a text. */
-static uint8_t type_of(const struct section *section)
+static uint8_t type_of(const struct dictionary_section *section)
 {
-    long type = words_plain_number(section->key[KEY_TYPE], 0);
+    long type = words_plain_number(section->key[DICTIONARY_TYPE], 0);
     if (type == TYPE_BOOLEAN)
         return OBJECT_UNSIGNED8;
     if (type == TYPE_REAL32)
@@ -224,9 +33,9 @@ static uint8_t type_of(const struct section *section)
     return type >= OBJECT_INTEGER8 && type <= OBJECT_UNSIGNED32 ? (uint8_t)type : OBJECT_STRING;
 }
 
-static uint8_t access_of(const struct section *section)
+static uint8_t access_of(const struct dictionary_section *section)
 {
-    const struct text_part access = section->key[KEY_ACCESS];
+    const struct text_part access = section->key[DICTIONARY_ACCESS];
     if (words_are(access, "const"))
         return OBJECT_CONST;
     if (words_are(access, "wo"))
@@ -235,20 +44,20 @@ static uint8_t access_of(const struct section *section)
 }
 
 /* CiA 306: rww goes into RPDOs, rwr into TPDOs, rw into both. */
-static uint8_t mapping_of(const struct section *section)
+static uint8_t mapping_of(const struct dictionary_section *section)
 {
-    const struct text_part access = section->key[KEY_ACCESS];
-    if (words_plain_number(section->key[KEY_MAPPING], 0) == 0)
+    const struct text_part access = section->key[DICTIONARY_ACCESS];
+    if (words_plain_number(section->key[DICTIONARY_MAPPING], 0) == 0)
         return 0;
     if (words_are(access, "rww") || words_are(access, "wo"))
         return OBJECT_TO_RPDO;
     return words_are(access, "rw") ? OBJECT_TO_RPDO | OBJECT_TO_TPDO : OBJECT_TO_TPDO;
 }
 
-static struct text_part default_of(const struct section *section)
+static struct text_part default_of(const struct dictionary_section *section)
 {
-    const struct text_part value = section->key[KEY_DEFAULT];
-    return value.length > 0 ? value : section->key[KEY_VALUE];
+    const struct text_part value = section->key[DICTIONARY_DEFAULT];
+    return value.length > 0 ? value : section->key[DICTIONARY_VALUE];
 }
 
 static const char *keep(struct builder *b, struct text_part part)
@@ -283,9 +92,9 @@ static int64_t most_of(uint8_t type)
     return (INT64_C(1) << (is_signed ? bits - 1 : bits)) - 1;
 }
 
-static void take_limits(struct object_row *row, const struct section *section)
+static void take_limits(struct object_row *row, const struct dictionary_section *section)
 {
-    const struct text_part low = section->key[KEY_LOW], high = section->key[KEY_HIGH];
+    const struct text_part low = section->key[DICTIONARY_LOW], high = section->key[DICTIONARY_HIGH];
     row->flags &= (uint8_t)~OBJECT_LIMITED;
     row->min = least_of(row->type);
     row->max = most_of(row->type);
@@ -357,20 +166,20 @@ static void take_own(struct builder *b, struct object_row *row)
 }
 
 /* One entry of the dictionary; value: its default. */
-static bool add_row(struct builder *b, const struct section *section, uint8_t sub, uint8_t kind,
-                    struct text_part value)
+static bool add_row(struct builder *b, const struct dictionary_section *section, uint8_t sub,
+                    uint8_t kind, struct text_part value)
 {
     struct object_row row = {.index = section->index, .sub = sub, .kind = kind};
     if (b->count > 0 && b->row[b->count - 1].index == row.index && b->row[b->count - 1].sub == sub)
         return true; /* described twice: the first counts */
-    struct object_row *grown = grow(b->row, b->count, &b->capacity, sizeof *grown);
+    struct object_row *grown = dictionary_grow(b->row, b->count, &b->capacity, sizeof *grown);
     if (grown == NULL)
         return false;
     b->row = grown;
     row.type = type_of(section);
     row.access = access_of(section);
     row.flags = mapping_of(section);
-    row.name = keep(b, section->key[KEY_NAME]);
+    row.name = keep(b, section->key[DICTIONARY_NAME]);
     take_own(b, &row);
     if (takt_object_type_bytes((enum object_type)row.type) == 0) {
         row.title = keep(b, value);
@@ -383,8 +192,8 @@ static bool add_row(struct builder *b, const struct section *section, uint8_t su
     return true;
 }
 
-static struct text_part compact_value(const struct reader *r, const struct section *section,
-                                      unsigned sub)
+static struct text_part compact_value(const struct dictionary_sections *r,
+                                      const struct dictionary_section *section, unsigned sub)
 {
     for (unsigned i = 0; i < r->values; i++)
         if (r->value[i].place == ((uint32_t)section->index << 8 | sub))
@@ -393,15 +202,16 @@ static struct text_part compact_value(const struct reader *r, const struct secti
 }
 
 /* CiA 306, 4.6.3.2: sub-index 0 is how many, and all others are alike. */
-static bool add_compact(struct builder *b, const struct section *section, unsigned subs)
+static bool add_compact(struct builder *b, const struct dictionary_section *section, unsigned subs)
 {
     static const char number[] = "0x05", read_only[] = "ro";
-    struct section head = *section;
+    struct dictionary_section head = *section;
     char text[8];
     (void)snprintf(text, sizeof text, "%u", subs);
-    head.key[KEY_TYPE] = (struct text_part){number, sizeof number - 1};
-    head.key[KEY_ACCESS] = (struct text_part){read_only, sizeof read_only - 1};
-    head.key[KEY_LOW] = head.key[KEY_HIGH] = head.key[KEY_MAPPING] = (struct text_part){NULL, 0};
+    head.key[DICTIONARY_TYPE] = (struct text_part){number, sizeof number - 1};
+    head.key[DICTIONARY_ACCESS] = (struct text_part){read_only, sizeof read_only - 1};
+    head.key[DICTIONARY_LOW] = head.key[DICTIONARY_HIGH] = head.key[DICTIONARY_MAPPING] =
+        (struct text_part){NULL, 0};
     if (!add_row(b, &head, 0, OBJECT_ARRAY, (struct text_part){text, strlen(text)}))
         return false;
     b->row[b->count - 1].title = b->row[b->count - 1].name;
@@ -412,27 +222,28 @@ static bool add_compact(struct builder *b, const struct section *section, unsign
 }
 
 /* An index with sub-indices has a section for itself, which is none of its entries. */
-static bool add_section(struct builder *b, const struct section *section)
+static bool add_section(struct builder *b, const struct dictionary_section *section)
 {
     bool is_next = section > b->reader->section && section[-1].index == section->index;
-    long kind = words_plain_number(section->key[KEY_KIND], OBJECT_VAR);
-    long subs = words_plain_number(section->key[KEY_COMPACT], 0);
+    long kind = words_plain_number(section->key[DICTIONARY_KIND], OBJECT_VAR);
+    long subs = words_plain_number(section->key[DICTIONARY_COMPACT], 0);
     bool has_entries = kind == OBJECT_ARRAY || kind == OBJECT_RECORD;
     if (section->has_values)
         return true;
-    if (section->sub == WHOLE && subs > 0)
-        return add_compact(b, section, subs < COMPACT_MAX ? (unsigned)subs : COMPACT_MAX);
-    if (section->sub == WHOLE)
+    if (section->sub == DICTIONARY_WHOLE && subs > 0)
+        return add_compact(b, section,
+                           subs < DICTIONARY_COMPACT_MAX ? (unsigned)subs : DICTIONARY_COMPACT_MAX);
+    if (section->sub == DICTIONARY_WHOLE)
         return has_entries || add_row(b, section, 0, OBJECT_VAR, default_of(section));
     if (section->sub > 0)
         return add_row(b, section, (uint8_t)section->sub, OBJECT_SAME, default_of(section));
     if (is_next)
-        kind = words_plain_number(section[-1].key[KEY_KIND], OBJECT_RECORD);
+        kind = words_plain_number(section[-1].key[DICTIONARY_KIND], OBJECT_RECORD);
     if (!add_row(b, section, 0, kind == OBJECT_ARRAY ? OBJECT_ARRAY : OBJECT_RECORD,
                  default_of(section)))
         return false;
     b->row[b->count - 1].title =
-        is_next ? keep(b, section[-1].key[KEY_NAME]) : b->row[b->count - 1].name;
+        is_next ? keep(b, section[-1].key[DICTIONARY_NAME]) : b->row[b->count - 1].name;
     return true;
 }
 
@@ -491,7 +302,7 @@ static bool fail(struct dictionary_problem *wrong, const char *text)
 
 static bool build(struct builder *b, struct dictionary_problem *wrong)
 {
-    const struct reader *r = b->reader;
+    const struct dictionary_sections *r = b->reader;
     bool has_index;
     for (unsigned i = 0; i < r->count; i++)
         if (!add_section(b, &r->section[i]))
@@ -508,26 +319,16 @@ static bool build(struct builder *b, struct dictionary_problem *wrong)
     return true;
 }
 
-/* In a configuration the values that have been set count; what has not been set is as it comes from the maker. */
-static void prefer_values(struct reader *r)
-{
-    for (unsigned i = 0; i < r->count; i++) {
-        struct text_part *key = r->section[i].key;
-        if (key[KEY_VALUE].length > 0)
-            key[KEY_DEFAULT] = key[KEY_VALUE];
-    }
-}
-
 /* Names and texts take no more than the file; each compact entry has one of its own. */
-static size_t names_most(const struct reader *r, size_t length)
+static size_t names_most(const struct dictionary_sections *r, size_t length)
 {
     size_t most = length + 4 * (size_t)r->count + 16;
     for (unsigned i = 0; i < r->count; i++) {
-        const struct section *section = &r->section[i];
-        if (words_plain_number(section->key[KEY_COMPACT], 0) > 0)
-            most += (COMPACT_MAX + 2) *
-                    (section->key[KEY_NAME].length + section->key[KEY_DEFAULT].length + 16);
-        most += section->key[KEY_NAME].length;
+        const struct dictionary_section *section = &r->section[i];
+        if (words_plain_number(section->key[DICTIONARY_COMPACT], 0) > 0)
+            most += (DICTIONARY_COMPACT_MAX + 2) * (section->key[DICTIONARY_NAME].length +
+                                                    section->key[DICTIONARY_DEFAULT].length + 16);
+        most += section->key[DICTIONARY_NAME].length;
     }
     return most;
 }
@@ -535,28 +336,20 @@ static size_t names_most(const struct reader *r, size_t length)
 bool dictionary_read(struct dictionary *dictionary, const char *text, size_t length,
                      struct dictionary_problem *wrong)
 {
-    struct reader r = {.wrong = wrong};
+    struct dictionary_sections r = {0};
     struct builder b = {.reader = &r};
-    bool good = read_lines(&r, text, length) || fail(wrong, "out of memory");
-    if (good && r.is_configuration)
-        prefer_values(&r);
-    if (good && r.count > 0) {
-        qsort(r.section, r.count, sizeof *r.section, compare_sections);
+    bool good = dictionary_sections_read(&r, text, length) || fail(wrong, "out of memory");
+    if (good && r.count > 0)
         b.names = malloc(names_most(&r, length));
-    }
     good = good &&
            (b.names != NULL ||
             fail(wrong, "this is no electronic data sheet: it has no section [1000]")) &&
            build(&b, wrong);
-    free(r.section);
-    free(r.value);
+    dictionary_sections_free(&r);
     *dictionary = (struct dictionary){
         .row = b.row, .memory = b.row, .count = b.count, .dummies = r.dummies, .names = b.names};
-    if (!good) {
-        free(b.row);
-        free(b.names);
-        *dictionary = (struct dictionary){0};
-    }
+    if (!good)
+        dictionary_free(dictionary);
     return good;
 }
 

@@ -5,9 +5,8 @@
 #include "page/page_access.h"
 #include "page/page_answer.h"
 #include "page/page_asset.h"
-#include "page/page_data.h"
+#include "page/page_visitors.h"
 
-#include <assert.h>
 #include <libwebsockets.h>
 #include <limits.h>
 #include <netdb.h>
@@ -15,18 +14,10 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
-
-/* Longest message of a page: pieces of an upload are shorter. */
-#define MESSAGE_MAX 65536
-
-/* Texts that wait for a page that does not read them; then it is sent away. */
-#define QUEUE_MAX 64
 
 /* A request must be whole so long after its first byte. */
 #define REQUEST_S 5
@@ -34,39 +25,17 @@
 /* Open at once, requests among them: others of this process have need of files too (1024 as a rule). */
 #define CONNECTIONS_MAX 512
 
-#define US_PER_MS    1000
 #define RECEIVED_MAX 16384
 #define HEADER_MAX   512
 #define ADDRESS_MAX  63
 
-static_assert(PAGE_TEXT_HEAD >= LWS_PRE, "texts can be sent as they are");
-
-struct waiting {
-    unsigned char *bytes; /* LWS_PRE, then the text */
-    size_t length;
-};
-
-struct session {
-    struct lws *wsi;
-    bool is_open;
-    struct page_client client;
-    struct waiting queue[QUEUE_MAX];
-    unsigned queued;
-    unsigned char *message; /* being received; MESSAGE_MAX */
-    size_t received;
-    uint32_t shown; /* frame */
-};
-
 struct page_server {
     struct page_server_config config;
-    struct page_data data;
+    struct page_visitors visitors;
     struct lws_context *context;
     struct lws_vhost *host;
-    struct session *session[PANEL_HOST_PAGES]; /* NULL: free */
     char address[ADDRESS_MAX + 1];
     char name[HOST_NAME_MAX + 1]; /* of this computer */
-    struct page_text text;
-    uint64_t ticked_ms;
     atomic_bool is_to_end;
     bool is_running;
     pthread_t thread;
@@ -75,217 +44,6 @@ struct page_server {
 static struct page_server *server_of(struct lws *wsi)
 {
     return lws_context_user(lws_get_context(wsi));
-}
-
-static double now_ms(clockid_t clock)
-{
-    struct timespec now;
-
-    (void)clock_gettime(clock, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-/* ---- texts to pages ---- */
-
-static void queue_text(struct session *s, const struct page_text *text)
-{
-    struct waiting *place = &s->queue[s->queued];
-
-    if (text->length == 0 || text->has_failed)
-        return;
-    if (s->queued == QUEUE_MAX) {
-        lws_set_timeout(s->wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
-        return;
-    }
-    place->bytes = malloc(LWS_PRE + text->length);
-    if (place->bytes == NULL)
-        return;
-    memcpy(place->bytes + LWS_PRE, page_text_get(text), text->length);
-    place->length = text->length;
-    s->queued++;
-    lws_callback_on_writable(s->wsi);
-}
-
-static void tell_all(void *context, const struct page_text *text)
-{
-    struct page_server *server = context;
-
-    for (unsigned i = 0; i < PANEL_HOST_PAGES; i++) {
-        if (server->session[i] != NULL)
-            queue_text(server->session[i], text);
-    }
-}
-
-static void tell_one(void *context, unsigned page, const struct page_text *text)
-{
-    struct page_server *server = context;
-
-    if (page < PANEL_HOST_PAGES && server->session[page] != NULL)
-        queue_text(server->session[page], text);
-}
-
-static int next_watched(void *context, int drive)
-{
-    const struct page_server *server = context;
-    int next = -1, first = -1;
-
-    for (unsigned i = 0; i < PANEL_HOST_PAGES; i++) {
-        const int watched = server->session[i] != NULL ? server->session[i]->client.watched : -1;
-
-        if (watched > drive && (next < 0 || watched < next))
-            next = watched;
-        if (watched >= 0 && (first < 0 || watched < first))
-            first = watched;
-    }
-    return next >= 0 ? next : first;
-}
-
-/* Frames are not queued: who reads slowly sees fewer of them. */
-static int send_frame(struct page_server *server, struct session *s)
-{
-    const struct page_data *data = &server->data;
-    struct page_text *text = &server->text;
-
-    s->shown = data->number;
-    page_text_clear(text);
-    page_text_add(text, "%s,\"c\":%u}", page_text_get(&data->frame),
-                  (unsigned)panel_host_get_control(data->panel, s->client.number, &data->snapshot));
-    if (text->has_failed)
-        return 0;
-    return lws_write(s->wsi, (unsigned char *)text->room + PAGE_TEXT_HEAD, text->length,
-                     LWS_WRITE_TEXT) < 0
-               ? -1
-               : 0;
-}
-
-static int send_queued(struct session *s)
-{
-    struct waiting first = s->queue[0];
-    int written;
-
-    s->queued--;
-    memmove(s->queue, s->queue + 1, s->queued * sizeof s->queue[0]);
-    written = lws_write(s->wsi, first.bytes + LWS_PRE, first.length, LWS_WRITE_TEXT);
-    free(first.bytes);
-    return written < 0 ? -1 : 0;
-}
-
-static int send_next(struct page_server *server, struct session *s)
-{
-    int result = 0;
-
-    if (s->queued > 0)
-        result = send_queued(s);
-    else if (s->shown != server->data.number)
-        result = send_frame(server, s);
-    if (s->queued > 0 || s->shown != server->data.number)
-        lws_callback_on_writable(s->wsi);
-    return result;
-}
-
-/* ---- pages come and go ---- */
-
-static void greet(struct page_server *server, struct session *s)
-{
-    struct page_text *text = &server->text;
-
-    page_text_clear(text);
-    page_json_hello(text, server->config.setup);
-    queue_text(s, text);
-    page_data_greet(&server->data, text);
-    queue_text(s, text);
-    page_data_describe_path(&server->data, text);
-    queue_text(s, text);
-    lws_set_timer_usecs(s->wsi, (lws_usec_t)PAGE_TICK_MS * US_PER_MS);
-}
-
-/* -1: all places are taken. */
-static int enter(struct page_server *server, struct lws *wsi, struct session *s)
-{
-    unsigned number = 0;
-
-    while (number < PANEL_HOST_PAGES && server->session[number] != NULL)
-        number++;
-    memset(s, 0, sizeof *s);
-    s->wsi = wsi;
-    s->message = malloc(MESSAGE_MAX);
-    if (number == PANEL_HOST_PAGES || s->message == NULL) {
-        free(s->message);
-        return -1;
-    }
-    s->is_open = true;
-    server->session[number] = s;
-    page_client_open(&s->client, number, server->config.panel, server->config.setup);
-    greet(server, s);
-    return 0;
-}
-
-static void leave(struct page_server *server, struct session *s)
-{
-    if (!s->is_open)
-        return;
-    server->session[s->client.number] = NULL;
-    page_data_forget(&server->data, s->client.number);
-    page_client_close(&s->client);
-    for (unsigned i = 0; i < s->queued; i++)
-        free(s->queue[i].bytes);
-    free(s->message);
-    s->is_open = false;
-}
-
-static void tick(struct page_server *server, struct session *s)
-{
-    const double now = now_ms(CLOCK_MONOTONIC);
-
-    lws_set_timer_usecs(s->wsi, (lws_usec_t)PAGE_TICK_MS * US_PER_MS);
-    if (now < (double)server->ticked_ms + PAGE_TICK_MS - 1)
-        return;
-    server->ticked_ms = (uint64_t)now;
-    page_data_tick(&server->data, now_ms(CLOCK_REALTIME));
-    for (unsigned i = 0; i < PANEL_HOST_PAGES; i++) {
-        if (server->session[i] != NULL)
-            lws_callback_on_writable(server->session[i]->wsi);
-    }
-}
-
-/* ---- what pages say ---- */
-
-static void take_text(struct page_server *server, struct session *s)
-{
-    struct page_text *text = &server->text;
-    struct page_command command = {0};
-
-    page_text_clear(text);
-    if (page_orders_take(&s->client, (const char *)s->message, s->received, text, &command) &&
-        !page_data_command(&server->data, &command))
-        page_orders_reply(text, command.id, "too many orders wait: try again");
-    queue_text(s, text);
-    if (!s->client.is_new_watch)
-        return;
-    s->client.is_new_watch = false;
-    page_text_clear(text);
-    page_json_objects(text, &server->config.setup->drive[s->client.watched],
-                      (unsigned)s->client.watched);
-    queue_text(s, text);
-}
-
-static int receive(struct page_server *server, struct session *s, const void *bytes, size_t length)
-{
-    if (length > MESSAGE_MAX - s->received) {
-        lws_close_reason(s->wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, NULL, 0);
-        return -1;
-    }
-    if (length > 0)
-        memcpy(s->message + s->received, bytes, length);
-    s->received += length;
-    if (!lws_is_final_fragment(s->wsi) || lws_remaining_packet_payload(s->wsi) > 0)
-        return 0;
-    if (lws_frame_is_binary(s->wsi))
-        page_orders_take_bytes(&s->client, s->message, s->received);
-    else
-        take_text(server, s);
-    s->received = 0;
-    return 0;
 }
 
 /* ---- who may ---- */
@@ -351,8 +109,9 @@ static int answer(struct page_server *server, struct lws *wsi, struct page_answe
     if (strcmp(path, "/program") == 0)
         return answer_program(server, wsi, r);
     if (strcmp(path, "/path") == 0)
-        return page_answer_copy(wsi, r, server->data.ready.point,
-                                server->data.ready.count * sizeof *server->data.ready.point);
+        return page_answer_copy(wsi, r, server->visitors.data.ready.point,
+                                server->visitors.data.ready.count *
+                                    sizeof *server->visitors.data.ready.point);
     if (!page_asset_find(path, &asset))
         return page_answer_refuse(wsi, r, HTTP_STATUS_NOT_FOUND, "there is no such file\n");
     r->bytes = asset.asset->bytes;
@@ -389,22 +148,22 @@ static int on_http(struct lws *wsi, enum lws_callback_reasons reason, void *user
 static int on_page(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                    size_t length)
 {
-    struct session *s = user;
+    struct page_visitor *s = user;
 
     switch ((int)reason) {
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
         return is_good_page(server_of(wsi), wsi) ? 0 : -1;
     case LWS_CALLBACK_ESTABLISHED:
-        return enter(server_of(wsi), wsi, s);
+        return page_visitor_enter(&server_of(wsi)->visitors, wsi, s);
     case LWS_CALLBACK_TIMER:
-        tick(server_of(wsi), s);
+        page_visitors_tick(&server_of(wsi)->visitors, s);
         return 0;
     case LWS_CALLBACK_SERVER_WRITEABLE:
-        return send_next(server_of(wsi), s);
+        return page_visitor_send(&server_of(wsi)->visitors, s);
     case LWS_CALLBACK_RECEIVE:
-        return receive(server_of(wsi), s, in, length);
+        return page_visitor_receive(&server_of(wsi)->visitors, s, in, length);
     case LWS_CALLBACK_CLOSED:
-        leave(server_of(wsi), s);
+        page_visitor_leave(&server_of(wsi)->visitors, s);
         return 0;
     default:
         return 0;
@@ -415,7 +174,7 @@ static const struct lws_protocols protocols[] = {
     {.name = "http", .callback = on_http, .per_session_data_size = sizeof(struct page_answer)},
     {.name = "takt",
      .callback = on_page,
-     .per_session_data_size = sizeof(struct session),
+     .per_session_data_size = sizeof(struct page_visitor),
      .rx_buffer_size = RECEIVED_MAX},
     {0},
 };
@@ -493,19 +252,6 @@ static const char *start(struct page_server *server)
     return server->is_running ? NULL : "no thread";
 }
 
-static const char *open_data(struct page_server *server)
-{
-    struct page_data *data = &server->data;
-
-    data->panel = server->config.panel;
-    data->link = server->config.link;
-    data->setup = server->config.setup;
-    data->owner = server->config.owner;
-    data->listener = (struct page_listener){tell_all, tell_one, next_watched, server};
-    (void)gethostname(server->name, sizeof server->name - 1);
-    return page_data_open(data, server->config.tools_max) ? NULL : "out of memory";
-}
-
 bool page_server_is_there(void)
 {
     return true;
@@ -519,8 +265,8 @@ struct page_server *page_server_open(const struct page_server_config *config, co
     if (server == NULL)
         return NULL;
     server->config = *config;
-    *problem = open_data(server);
-    if (*problem == NULL)
+    (void)gethostname(server->name, sizeof server->name - 1);
+    if (page_visitors_open(&server->visitors, config))
         *problem = listen_there(server);
     if (*problem == NULL)
         *problem = start(server);
@@ -541,8 +287,7 @@ void page_server_close(struct page_server *server)
     }
     if (server->context != NULL)
         lws_context_destroy(server->context);
-    page_data_close(&server->data);
-    page_text_free(&server->text);
+    page_visitors_close(&server->visitors);
     free(server);
 }
 

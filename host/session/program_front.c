@@ -4,13 +4,11 @@
 
 #include "cli/message.h"
 #include "dialect/line.h"
+#include "session/subroutine_file.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- what a program is written for ---- */
@@ -276,84 +274,6 @@ static bool translate(const struct junction *j, const char *name, enum dialect d
     return result.wrong_line == 0;
 }
 
-/* Endings of files of programs, the more usual first. */
-static const char *const endings[] = {".ngc", ".nc",  ".cnc", ".tap", ".spf", ".mpf",
-                                      ".eia", ".prg", ".min", ".txt", ""};
-#define ENDINGS (sizeof endings / sizeof endings[0])
-
-/* The place of a file's ending among them; ENDINGS: it is none of them. */
-static size_t ending_of(const char *file, size_t *stem)
-{
-    const char *point = strrchr(file, '.');
-    size_t i = 0;
-
-    *stem = point != NULL ? (size_t)(point - file) : strlen(file);
-    while (i < ENDINGS && strcasecmp(file + *stem, endings[i]) != 0)
-        i++;
-    return i;
-}
-
-/* Without its ending a file has the name, or is 1000, O1000 or o01000. */
-static bool is_named(const char *file, size_t stem, const char *label)
-{
-    const size_t length = strlen(label);
-
-    if (label[0] == '<')
-        return stem == length - 1 && strncasecmp(file, label + 1, stem) == 0;
-    if (stem > 0 && line_lower(*file) == 'o') {
-        file++;
-        stem--;
-    }
-    for (; stem > length && *file == '0'; stem--)
-        file++;
-    return stem == length && strncmp(file, label, length) == 0;
-}
-
-/* The file of a subroutine in a folder, which ends with '/' or is empty. */
-static bool find_in(const char *folder, const char *label, char *path, size_t size)
-{
-    DIR *entries = opendir(folder[0] != '\0' ? folder : ".");
-    size_t best = ENDINGS;
-    char chosen[256] = "";
-    const struct dirent *entry;
-    struct stat status;
-
-    while (entries != NULL && (entry = readdir(entries)) != NULL) {
-        size_t stem;
-        const size_t ending = ending_of(entry->d_name, &stem);
-
-        if (ending > best || ending == ENDINGS || !is_named(entry->d_name, stem, label) ||
-            (ending == best && strcmp(entry->d_name, chosen) > 0))
-            continue;
-        best = ending;
-        (void)snprintf(chosen, sizeof chosen, "%s", entry->d_name);
-    }
-    if (entries != NULL)
-        (void)closedir(entries);
-    (void)snprintf(path, size, "%s%s", folder, chosen);
-    return best < ENDINGS && stat(path, &status) == 0 && S_ISREG(status.st_mode);
-}
-
-static bool find_file(const struct junction *j, const char *label, char *path, size_t size)
-{
-    const char *program = j->text->name;
-    const char *slash = strrchr(program, '/');
-    char folder[4096];
-    int length = snprintf(folder, sizeof folder, "%.*s",
-                          slash != NULL ? (int)(slash - program) + 1 : 0, program);
-
-    if (strchr(label, '/') != NULL)
-        return false;
-    if (length < (int)sizeof folder && find_in(folder, label, path, size))
-        return true;
-    for (unsigned i = 0; i < j->front->folders; i++) {
-        length = snprintf(folder, sizeof folder, "%s/", j->front->folder[i]);
-        if (length < (int)sizeof folder && find_in(folder, label, path, size))
-            return true;
-    }
-    return false;
-}
-
 /* The program has ended before what follows; nothing of it is executed on the way. */
 static void end_program(struct junction *j)
 {
@@ -369,7 +289,8 @@ static bool bring_in(struct junction *j, const char *label)
     struct text found;
     struct dialect_text bytes;
 
-    if (!find_file(j, label, path, sizeof path) || strcmp(path, j->text->name) == 0)
+    if (!subroutine_file_find(j->front, j->text->name, label, path, sizeof path) ||
+        strcmp(path, j->text->name) == 0)
         return true;
     if (!text_read(&found, path))
         return false;

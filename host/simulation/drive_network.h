@@ -79,6 +79,11 @@ struct drive_network_options {
 /* False after a message: the options do not go together. Touches nothing. */
 bool drive_network_check_options(const struct drive_network_options *options);
 
+/* The next of the addresses of --bus. False: there is none. */
+bool drive_network_next_address(const char **list, char address[DRIVE_NETWORK_ADDRESS_MAX + 1]);
+/* Buses and drives are not in this process. */
+bool drive_network_is_outside(const struct drive_network_options *options);
+
 /* The drives boot, or are there. STATUS_DONE; else after a message, and nothing is open. */
 enum command_status drive_network_open(struct drive_network *network,
                                        const struct machine_setup *setup,

@@ -9,21 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct command *const commands[] = {
-    &command_run,        &command_plan,
-    &command_check,      &command_lint,
-    &command_lsp,        &command_convert,
-    &command_canon,      &command_trace,
-    &command_view,       &command_machine,
-    &command_serve,      &command_panel,
-    &command_bore,       &command_circle,
-    &command_friction,   &command_resonance,
-    &command_tune,       &command_drives,
-    &command_calibrate,  &command_correct,
-    &command_replay,     &command_cycle_frequency,
-    &command_precision,  &command_compile,
-    &command_completion,
-};
+#define ADDRESS(name) &command_##name,
+static const struct command *const commands[] = {COMMAND_ROWS(ADDRESS)};
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
 

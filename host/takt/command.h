@@ -19,33 +19,37 @@ struct command {
     enum command_status (*run)(const struct options *options);
 };
 
-extern const struct command command_run;
-extern const struct command command_plan;
-extern const struct command command_check;
-extern const struct command command_lint;
-extern const struct command command_canon;
-extern const struct command command_lsp;
-extern const struct command command_convert;
-extern const struct command command_trace;
-extern const struct command command_view;
-extern const struct command command_machine;
-extern const struct command command_cycle_frequency;
-extern const struct command command_precision;
-extern const struct command command_calibrate;
-extern const struct command command_correct;
-extern const struct command command_serve;
-extern const struct command command_panel;
-extern const struct command command_drives;
-extern const struct command command_replay;
-extern const struct command command_bore;
-extern const struct command command_circle;
-extern const struct command command_friction;
-extern const struct command command_resonance;
-extern const struct command command_tune;
-extern const struct command command_compile;
-extern const struct command command_completion;
+/* All of them, in the order of the help: command_NAME of command_NAME.c. */
+#define COMMAND_ROWS(ROW)                                                                          \
+    ROW(run)                                                                                       \
+    ROW(plan)                                                                                      \
+    ROW(check)                                                                                     \
+    ROW(lint)                                                                                      \
+    ROW(lsp)                                                                                       \
+    ROW(convert)                                                                                   \
+    ROW(canon)                                                                                     \
+    ROW(trace)                                                                                     \
+    ROW(view)                                                                                      \
+    ROW(machine)                                                                                   \
+    ROW(serve)                                                                                     \
+    ROW(panel)                                                                                     \
+    ROW(bore)                                                                                      \
+    ROW(circle)                                                                                    \
+    ROW(friction)                                                                                  \
+    ROW(resonance)                                                                                 \
+    ROW(tune)                                                                                      \
+    ROW(drives)                                                                                    \
+    ROW(calibrate)                                                                                 \
+    ROW(correct)                                                                                   \
+    ROW(replay)                                                                                    \
+    ROW(cycle_frequency)                                                                           \
+    ROW(precision)                                                                                 \
+    ROW(compile)                                                                                   \
+    ROW(completion)
 
-/* All of them, in the order of the help. */
+#define COMMAND_DECLARE(name) extern const struct command command_##name;
+COMMAND_ROWS(COMMAND_DECLARE)
+
 const struct command *const *command_list(unsigned *count);
 
 /* Finds and runs the sub-command of a command line. Returns the exit status. */

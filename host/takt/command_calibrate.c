@@ -2,20 +2,12 @@
 #include "cli/axis_unit.h"
 #include "cli/message.h"
 #include "config/correction_file.h"
-#include "studies/measurement.h"
+#include "studies/calibration.h"
 #include "takt/command.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Everything a calibration works with. */
-struct calibration {
-    struct session session;
-    struct table table;
-    struct measurement_visit *visits; /* of every row first from below, then from above */
-    struct measurement_instrument instrument;
-};
 
 static bool is_axis(const struct calibration *c, unsigned axis)
 {
@@ -120,16 +112,17 @@ static bool set_knots(struct calibration *c, const struct options *options)
 /* A volume: the linear axes, and the turning axis if the grid has a fourth number. */
 static bool set_volume(struct calibration *c, const char *grid)
 {
-    const bool turns = strchr(grid, 'x') != NULL && strchr(strchr(grid, 'x') + 1, 'x') != NULL &&
-                       strchr(strchr(strchr(grid, 'x') + 1, 'x') + 1, 'x') != NULL;
+    unsigned numbers = 1;
 
+    for (const char *at = strchr(grid, 'x'); at != NULL; at = strchr(at + 1, 'x'))
+        numbers++;
     for (uint8_t i = 0; i < AXIS_LINEAR_COUNT; i++) {
         if (is_axis(c, i)) {
             c->table.input[c->table.inputs++] = i;
             c->table.output[c->table.outputs++] = (struct table_output){i, TABLE_BOTH};
         }
     }
-    if (!turns)
+    if (numbers <= AXIS_LINEAR_COUNT)
         return true;
     if (turn_axis(c) == AXIS_COUNT || !is_axis(c, turn_axis(c))) {
         message_command_error("--grid %s: the machine has no turning table (geometry.table_axis, "
@@ -143,11 +136,19 @@ static bool set_volume(struct calibration *c, const char *grid)
     return true;
 }
 
+/* AXIS_COUNT: it is the letter of none. */
+static uint8_t axis_named(const char *name)
+{
+    const char *letter =
+        name != NULL && strlen(name) == 1 ? strchr(AXIS_LETTERS, name[0] & ~0x20) : NULL;
+
+    return letter != NULL ? (uint8_t)(letter - AXIS_LETTERS) : AXIS_COUNT;
+}
+
 /* The axis of an option, one that can be measured. AXIS_COUNT after a message. */
 static uint8_t read_axis(const struct calibration *c, const char *option, const char *name)
 {
-    const char *letter = strlen(name) == 1 ? strchr(AXIS_LETTERS, name[0] & ~0x20) : NULL;
-    const uint8_t axis = letter != NULL ? (uint8_t)(letter - AXIS_LETTERS) : AXIS_COUNT;
+    const uint8_t axis = axis_named(name);
 
     if (axis < AXIS_COUNT && is_axis(c, axis) && (axis < AXIS_LINEAR_COUNT || axis == turn_axis(c)))
         return axis;
@@ -186,82 +187,7 @@ static bool set_axis(struct calibration *c, const char *name)
     return true;
 }
 
-/* ---- measuring ---- */
-
-static void drop_axis_tables(struct axis_tables *tables, unsigned input)
-{
-    unsigned kept = 0;
-
-    for (unsigned i = 0; i < tables->count; i++) {
-        if (tables->pair[i].input != input)
-            tables->pair[kept++] = tables->pair[i];
-    }
-    tables->count = kept;
-    tables->inputs &= ~(1U << input);
-}
-
-/* What is measured must not be corrected already, and a part that stands askew is no error of the machine. */
-static void switch_off(struct calibration *c)
-{
-    c->session.setup.machine.correction.off |= 1U << CORRECTION_SETUP | 1U << CORRECTION_WEAR;
-    if (c->table.errors)
-        c->session.setup.machine.correction.off |=
-            1U << CORRECTION_MATRIX | 1U << CORRECTION_AXES | 1U << CORRECTION_VOLUME;
-    if (c->session.correction == NULL || c->table.errors)
-        return;
-    if (c->table.inputs > 1)
-        c->session.correction->volume.inputs = 0;
-    else
-        drop_axis_tables(&c->session.correction->axes, c->table.input[0]);
-}
-
-static bool plan_visits(struct calibration *c)
-{
-    const uint32_t rows = takt_table_rows(&c->table);
-
-    c->visits = calloc(2 * (size_t)rows, sizeof *c->visits);
-    if (c->visits == NULL) {
-        message_command_error("out of memory");
-        return false;
-    }
-    for (uint32_t row = 0; row < rows; row++) {
-        struct measurement_visit *visit = &c->visits[2 * (size_t)row];
-        uint32_t rest = row;
-
-        for (unsigned i = 0; i < c->table.inputs; i++) {
-            visit[0].at.at[c->table.input[i]] = c->table.knot_mm[i][rest % c->table.knots[i]];
-            rest /= c->table.knots[i];
-        }
-        visit[0].direction = 1;
-        visit[1].at = visit[0].at;
-        visit[1].direction = -1;
-    }
-    return true;
-}
-
-/* K is what takes the deviation back; without a direction, the mean of both. Of a unit the errors are told themselves. */
-static double value_of(const struct calibration *c, const struct measurement_visit visit[2],
-                       const struct table_output *output)
-{
-    const double up = visit[0].deviation.at[output->axis];
-    const double down = visit[1].deviation.at[output->axis];
-
-    if (output->direction == TABLE_BOTH)
-        return (c->table.errors ? 0.5 : -0.5) * (up + down);
-    return output->direction == TABLE_UP ? -up : -down;
-}
-
-static void set_values(struct calibration *c)
-{
-    struct table *table = &c->table;
-    const uint32_t rows = takt_table_rows(table);
-
-    for (uint32_t row = 0; row < rows; row++) {
-        for (unsigned i = 0; i < table->outputs; i++)
-            table->value_mm[row * table->outputs + i] =
-                (float)value_of(c, &c->visits[2 * (size_t)row], &table->output[i]);
-    }
-}
+/* ---- the table ---- */
 
 static enum command_status write_result(const struct calibration *c, const struct options *options)
 {
@@ -279,24 +205,6 @@ static enum command_status write_result(const struct calibration *c, const struc
                        c->session.setup.machine.name, (unsigned)takt_table_rows(&c->table),
                        1e3 * c->instrument.sigma);
     return correction_file_write(&c->table, path, comment) ? STATUS_DONE : STATUS_ENVIRONMENT;
-}
-
-/* ---- what is composed instead ---- */
-
-/* The volume table that the errors of all units make together: for controllers without them, on boards. */
-static void compose(struct calibration *c)
-{
-    struct table *table = &c->table;
-    const uint32_t rows = takt_table_rows(table);
-
-    for (uint32_t row = 0; row < rows; row++) {
-        double deviation[AXIS_COUNT];
-
-        (void)takt_geometry_deviation(c->session.correction->geometry,
-                                      &c->visits[2 * (size_t)row].at, deviation);
-        for (unsigned i = 0; i < table->outputs; i++)
-            table->value_mm[row * table->outputs + i] = (float)-deviation[table->output[i].axis];
-    }
 }
 
 /* ---- whether the machine can use the table ---- */
@@ -342,22 +250,6 @@ static bool set_task(struct calibration *c, const struct options *options)
                                             : set_volume(c, options->correction.grid);
 }
 
-static enum command_status fill(struct calibration *c, const struct options *options)
-{
-    enum command_status status;
-
-    if (options->correction.compose) {
-        compose(c);
-        return STATUS_DONE;
-    }
-    switch_off(c);
-    status =
-        measurement_run(&c->session, c->visits, 2 * takt_table_rows(&c->table), &c->instrument);
-    if (status == STATUS_DONE)
-        set_values(c);
-    return status;
-}
-
 /* A table that does not fit is refused before anything is measured, one with too large numbers afterwards. */
 static enum command_status measure(struct calibration *c, const struct options *options)
 {
@@ -365,9 +257,7 @@ static enum command_status measure(struct calibration *c, const struct options *
 
     if (!set_task(c, options) || !set_knots(c, options) || !check_table(c))
         return STATUS_INPUT;
-    if (!plan_visits(c))
-        return STATUS_ENVIRONMENT;
-    status = fill(c, options);
+    status = calibration_fill(c, options->correction.compose);
     if (status != STATUS_DONE)
         return status;
     return check_table(c) ? write_result(c, options) : STATUS_FAILED;
@@ -376,11 +266,9 @@ static enum command_status measure(struct calibration *c, const struct options *
 /* From LinuxCNC's file instead of a measurement. */
 static enum command_status convert(struct calibration *c, const struct options *options)
 {
-    const char *letter = options->correction.axis != NULL && strlen(options->correction.axis) == 1
-                             ? strchr(AXIS_LETTERS, options->correction.axis[0] & ~0x20)
-                             : NULL;
+    const enum axis axis = (enum axis)axis_named(options->correction.axis);
 
-    if (letter == NULL) {
+    if (axis == AXIS_COUNT) {
         message_command_error("--comp needs --axis, the axis its numbers are for");
         return STATUS_INPUT;
     }
@@ -388,9 +276,9 @@ static enum command_status convert(struct calibration *c, const struct options *
         message_command_error("--comp-type is 0 (positions measured) or 1 (corrections)");
         return STATUS_INPUT;
     }
-    if (!correction_file_read_triplets(
-            &c->table, options->correction.comp, (enum axis)(letter - AXIS_LETTERS),
-            (unsigned)options->correction.comp_type, &c->session.setup.machine))
+    if (!correction_file_read_triplets(&c->table, options->correction.comp, axis,
+                                       (unsigned)options->correction.comp_type,
+                                       &c->session.setup.machine))
         return STATUS_INPUT;
     return write_result(c, options);
 }
@@ -440,8 +328,7 @@ static enum command_status command_calibrate_execute(const struct options *optio
         return STATUS_ENVIRONMENT;
     }
     status = execute(c, options);
-    session_close(&c->session);
-    free(c->visits);
+    calibration_close(c);
     free(c);
     return status;
 }

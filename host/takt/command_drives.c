@@ -6,13 +6,10 @@
 #include "base/maths.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "cli/output_file.h"
-#include "cli/text.h"
 #include "config/data_sheet.h"
 #include "config/inject_file.h"
 #include "config/machine_file.h"
 #include "config/probe_file.h"
-#include "drives/eds.h"
 #include "serving/drive_service.h"
 #include "serving/serving_options.h"
 #include "serving/spindle_service.h"
@@ -21,8 +18,6 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define NODE_MAX_ID 127
 
@@ -199,82 +194,6 @@ static bool load_script(struct drives_command *command)
     return true;
 }
 
-static bool send_nowhere(void *context, const struct can_frame *frame)
-{
-    (void)context;
-    (void)frame;
-    return true;
-}
-
-static bool receive_nothing(void *context, struct can_frame *frame)
-{
-    (void)context;
-    (void)frame;
-    return false;
-}
-
-/* The drive as it is at power-on. */
-static enum command_status write_eds(const struct virtual_drive_config *config, const char *path)
-{
-    static struct virtual_drive drive;
-    static const struct can_port nowhere = {.send = send_nowhere, .receive = receive_nothing};
-    static struct output_file file;
-    const char *slash = strrchr(path, '/');
-
-    if (!output_file_open(&file, path))
-        return STATUS_ENVIRONMENT;
-    virtual_drive_init(&drive, config, NULL, &nowhere);
-    eds_write(file.stream, &drive.servo, slash != NULL ? slash + 1 : path);
-    if (!output_file_finish(&file) || !output_file_place(&file))
-        return STATUS_ENVIRONMENT;
-    return STATUS_DONE;
-}
-
-static bool is_folder(const char *path)
-{
-    struct stat status;
-
-    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
-}
-
-/* A data sheet of somebody else is not written over. False after a message. */
-static bool may_write(const char *path)
-{
-    struct text text;
-    bool is_own;
-
-    if (strcmp(path, "-") == 0 || access(path, F_OK) != 0 || !text_read(&text, path))
-        return true;
-    is_own = strstr(text.bytes, "CreatedBy=takt") != NULL;
-    text_free(&text);
-    if (!is_own)
-        message_command_error(
-            "--eds %s: it is not takt's own, and would be written over; with --bus "
-            "the drives are those of this file",
-            path);
-    return is_own;
-}
-
-/* Into a folder: a file for every drive. As a file: of the first drive. */
-static enum command_status write_data_sheets(const struct drives_command *command)
-{
-    const char *path = command->options->eds;
-    enum command_status status = STATUS_DONE;
-    char name[OUTPUT_PATH_MAX];
-
-    if (!is_folder(path) && !may_write(path))
-        return STATUS_INPUT;
-    if (!is_folder(path))
-        return write_eds(&command->drives.drive[0], path);
-    for (unsigned i = 0; i < command->drives.count && status == STATUS_DONE; i++) {
-        const struct virtual_drive_config *drive = &command->drives.drive[i];
-
-        (void)snprintf(name, sizeof name, "%s/takt-drive-%u.eds", path, (unsigned)drive->node);
-        status = write_eds(drive, name);
-    }
-    return status;
-}
-
 /* Where the log goes; NULL: nowhere. False after a message. */
 static bool open_log(const struct options *options, FILE **log)
 {
@@ -411,7 +330,7 @@ static enum command_status command_drives_execute(const struct options *options)
         !probe_file_load(&command.probe, options->probe))
         return STATUS_INPUT;
     if (options->eds != NULL && options->bus == NULL)
-        status = write_data_sheets(&command);
+        status = data_sheet_write(&command.drives, options->eds);
     if (status == STATUS_DONE && options->panel.spindle != NULL)
         status = serve_with_spindle(&command);
     else if (status == STATUS_DONE && options->bus != NULL)

@@ -10,6 +10,7 @@
 #include "cutter_compensation/cutter_compensation.h"
 #include "geometry/curve.h"
 #include "program/program.h"
+#include "verifier/tube_segment.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,13 +18,6 @@
 
 /* A tap turns back so much of a revolution above the bottom of its hole at most. */
 #define TUBE_TURNING_REV 0.1
-
-/* From start to start + way, over all axes; a radian counts as a millimetre. */
-struct tube_segment {
-    struct point start, way;
-    double length_mm; /* may be 0 */
-    double square_mm2;
-};
 
 /* A motion with a length; its pieces share it. */
 struct tube_motion {

@@ -1,6 +1,7 @@
 #include "verifier/tube_verifier.h"
 
 #include "base/maths.h"
+#include "verifier/tube_segment.h"
 #include "verifier/verifier_curve.h"
 
 #include <string.h>
@@ -28,14 +29,6 @@
 
 /* In the present step, this piece is not come to from the one before. */
 #define NOT_ENTERED (-1.0)
-
-/* Where a setpoint is beside a piece. */
-struct beside {
-    double part;        /* of the piece, 0 ... 1 */
-    double distance_mm; /* from there */
-    double first;       /* the first part of it that is within reach; > 1: none */
-    double last;
-};
 
 /* The nearest of the places that a setpoint may be at. */
 struct nearest {
@@ -79,57 +72,9 @@ static void raise_to(double *largest, double value)
         *largest = value;
 }
 
-/*
- * The place f >= from of a segment nearest to p, and all places within w of p:
- *
- *     |p - start - f way| <= w      <=>     |f - g| <= sqrt((w^2 - d^2) / way^2)
- *
- * with g the closest point of the perpendicular from p on the line, d its length.
- */
-static struct beside look_beside(const struct tube_segment *s, double from, const struct point *p,
-                                 double within_mm)
-{
-    struct beside b = {.part = from, .first = 2};
-    double along = 0, square = 0, closest = 0, half;
-
-    for (int i = 0; i < AXIS_COUNT; i++)
-        along += (p->at[i] - s->start.at[i]) * s->way.at[i];
-    if (s->square_mm2 > 0) {
-        closest = along / s->square_mm2;
-        b.part = maths_clamp(closest, from, 1);
-    }
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double off = p->at[i] - s->start.at[i] - b.part * s->way.at[i];
-
-        square += off * off;
-    }
-    b.distance_mm = maths_sqrt(square);
-    if (b.distance_mm > within_mm)
-        return b;
-    b.first = from;
-    b.last = 1;
-    if (s->square_mm2 > 0) {
-        half = (within_mm * within_mm - square) / s->square_mm2 +
-               (b.part - closest) * (b.part - closest);
-        half = maths_sqrt(maths_max(half, 0));
-        b.first = maths_clamp(closest - half, from, b.part);
-        b.last = maths_clamp(closest + half, b.part, 1);
-    }
-    return b;
-}
-
 static double within_of(const struct tube_piece *piece)
 {
     return piece->motion->tolerance_mm + piece->motion->cut_mm;
-}
-
-static struct point end_of(const struct tube_segment *s)
-{
-    struct point end;
-
-    for (int i = 0; i < AXIS_COUNT; i++)
-        end.at[i] = s->start.at[i] + s->way.at[i];
-    return end;
 }
 
 /* How near a step must come to the end of a piece: from an exact motion it may go straight into the next. */
@@ -145,8 +90,9 @@ static double within_end(const struct tube_piece *piece, const struct stride *st
 /* Goes past the end of a piece, from this part of the step on. Returns the first part at which it can, or NOT_ENTERED. */
 static double pass_end(struct tube_piece *piece, const struct stride *step, double from)
 {
-    const struct point end = end_of(&piece->segment);
-    const struct beside b = look_beside(&step->segment, 0, &end, within_end(piece, step));
+    const struct point end = tube_segment_end(&piece->segment);
+    const struct tube_beside b =
+        tube_segment_beside(&step->segment, 0, &end, within_end(piece, step));
 
     piece->corner_mm = maths_min(piece->corner_mm, b.distance_mm);
     return b.first <= 1 && b.last >= from ? maths_max(b.first, from) : NOT_ENTERED;
@@ -161,7 +107,8 @@ static double follow_piece(struct tube_verifier *t, size_t k, const struct strid
 {
     struct tube_piece *piece = tube_path_at(&t->path, k);
     const double from = entered >= 0 ? 0 : piece->from;
-    const struct beside b = look_beside(&piece->segment, from, &step->to, within_of(piece));
+    const struct tube_beside b =
+        tube_segment_beside(&piece->segment, from, &step->to, within_of(piece));
     const double of_tolerance = b.distance_mm / piece->motion->tolerance_mm;
     const double ahead_mm = (1 - b.part) * piece->segment.length_mm;
     double leaves = NOT_ENTERED;
@@ -224,7 +171,8 @@ static void find_again(struct tube_verifier *t, const struct stride *step)
 
     for (size_t k = 0; ahead_mm <= reach_mm && has_piece(t, k); k++) {
         const struct tube_piece *piece = tube_path_at(&t->path, k);
-        const struct beside b = look_beside(&piece->segment, piece->from, &step->to, 0);
+        const struct tube_beside b =
+            tube_segment_beside(&piece->segment, piece->from, &step->to, 0);
 
         ahead_mm += (1 - piece->from) * piece->length_mm;
         if (b.distance_mm < least_mm) {
@@ -266,7 +214,7 @@ static double curve_distance(const struct tube_piece *piece, double part, const 
 
 static double distance_from(const struct tube_piece *piece, const struct point *p)
 {
-    const struct beside b = look_beside(&piece->segment, piece->from, p, 0);
+    const struct tube_beside b = tube_segment_beside(&piece->segment, piece->from, p, 0);
 
     return piece->motion->cut_mm > 0 ? curve_distance(piece, b.part, p) : b.distance_mm;
 }
@@ -327,7 +275,7 @@ static void measure(struct tube_verifier *t, const struct point *p, struct neare
 static void settle_corner(struct tube_verifier *t)
 {
     const struct tube_piece *piece = tube_path_at(&t->path, 0);
-    const struct point end = end_of(&piece->segment);
+    const struct point end = tube_segment_end(&piece->segment);
     const double corner_mm =
         maths_min(piece->corner_mm, verifier_distance(&t->last, &end)); /* if nothing came to it */
     double tolerance_mm = allowed_mm(t, piece);
@@ -368,7 +316,7 @@ static bool is_believed(const struct tube_piece *piece, const struct stride *ste
 {
     return piece->reached && piece->motion->number + NUMBER_ROOM >= step->motion &&
            piece->motion->number <= step->motion &&
-           look_beside(&piece->segment, piece->from, &step->to, 0).distance_mm <=
+           tube_segment_beside(&piece->segment, piece->from, &step->to, 0).distance_mm <=
                piece->motion->tolerance_mm;
 }
 

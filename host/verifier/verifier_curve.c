@@ -93,10 +93,13 @@ static double involute_distance(const struct curve *c, const struct point *p, do
     return verifier_distance(p, &on);
 }
 
-/* The nearest place by Newton's steps s += (p - x) t / t^2 from the fraction's place: a piece hardly bends. */
+/*
+ * Of any curve the nearest place by Newton's steps s += (p - x) t / t^2 from the fraction's place: between two setpoints it hardly
+ * bends.
+ */
 #define NEAREST_STEPS 8
 
-static double quintic_distance(const struct curve *c, const struct point *p, double *fraction)
+static double near_distance(const struct curve *c, const struct point *p, double *fraction)
 {
     double s = maths_clamp(*fraction, 0, 1) * c->length_mm;
     struct point on, tangent;
@@ -119,19 +122,13 @@ static double quintic_distance(const struct curve *c, const struct point *p, dou
 
 double verifier_curve_distance(const struct curve *c, const struct point *p, double *fraction)
 {
-    switch (c->kind) {
-    case CURVE_LINE:
+    if (c->kind == CURVE_LINE)
         return line_distance(c, p, fraction);
-    case CURVE_ARC:
+    if (c->kind == CURVE_ARC)
         return arc_distance(c, p, fraction);
-    case CURVE_INVOLUTE:
+    if (c->kind == CURVE_INVOLUTE)
         return involute_distance(c, p, fraction);
-    case CURVE_QUINTIC:
-        return quintic_distance(c, p, fraction);
-    case CURVE_SPLINE: /* no program has one */
-        break;
-    }
-    return MATHS_INFINITY;
+    return near_distance(c, p, fraction);
 }
 
 /*
@@ -188,16 +185,16 @@ static double involute_chord_error(const struct curve *c, const struct point *fr
 /* Places between both, of which the largest counts. */
 #define CHORD_PLACES 16
 
-static double quintic_chord_error(const struct curve *c, const struct point *from,
-                                  const struct point *to)
+static double near_chord_error(const struct curve *c, const struct point *from,
+                               const struct point *to)
 {
     struct curve chord;
     double begin = 0, end = 1, largest = 0;
 
     if (!takt_curve_set_line(&chord, from, to))
         return 0;
-    (void)quintic_distance(c, from, &begin);
-    (void)quintic_distance(c, to, &end);
+    (void)near_distance(c, from, &begin);
+    (void)near_distance(c, to, &end);
     for (unsigned k = 1; k < CHORD_PLACES; k++) {
         double fraction = 0;
         struct point p;
@@ -211,17 +208,11 @@ static double quintic_chord_error(const struct curve *c, const struct point *fro
 double verifier_curve_chord_error(const struct curve *c, const struct point *from,
                                   const struct point *to)
 {
-    switch (c->kind) {
-    case CURVE_LINE:
+    if (c->kind == CURVE_LINE)
         return 0;
-    case CURVE_ARC:
+    if (c->kind == CURVE_ARC)
         return arc_chord_error(&c->arc, from, to);
-    case CURVE_INVOLUTE:
+    if (c->kind == CURVE_INVOLUTE)
         return involute_chord_error(c, from, to);
-    case CURVE_QUINTIC:
-        return quintic_chord_error(c, from, to);
-    case CURVE_SPLINE:
-        break;
-    }
-    return MATHS_INFINITY;
+    return near_chord_error(c, from, to);
 }

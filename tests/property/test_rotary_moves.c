@@ -362,14 +362,12 @@ static void verifier(const struct cycle_record *record)
 /* After a reset nothing but the end comes. */
 static void push(unsigned *pushed)
 {
-    struct move end;
+    const struct move end = {.kind = MOVE_END};
 
     if (*pushed < run.moves && !run.hands.reset) {
         takt_path_push(&path, &run.move[(*pushed)++]);
         return;
     }
-    memset(&end, 0, sizeof(end));
-    end.kind = MOVE_END;
     takt_path_push(&path, &end);
     takt_path_finish(&path);
 }

@@ -24,7 +24,7 @@ void tearDown(void)
 }
 
 /* A text becomes another one; "|" begins what goes on with the line before. */
-static void expect(enum dialect dialect, const char *from, const char *to)
+static inline void expect(enum dialect dialect, const char *from, const char *to)
 {
     char found[4096];
 
@@ -39,7 +39,7 @@ static void expect(enum dialect dialect, const char *from, const char *to)
     dialect_text_free(&result.text);
 }
 
-static struct dialect_guess guess(const char *text)
+static inline struct dialect_guess guess(const char *text)
 {
     struct dialect_detector detector = {0};
 

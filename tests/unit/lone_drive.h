@@ -149,4 +149,12 @@ static inline int32_t lone_actual(struct lone_drive *lone)
     return (int32_t)lone_read(lone, 0x6064, 0);
 }
 
+static inline unsigned lone_count_sent(const struct lone_drive *lone, unsigned id)
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < lone->sent_count; i++)
+        count += lone->sent[i].id == id;
+    return count;
+}
+
 #endif

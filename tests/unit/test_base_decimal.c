@@ -1,34 +1,12 @@
 /* firmware/base/decimal.h against strtod and printf of the host, which are exact. */
 #include "base/decimal.h"
-
-#include "unity.h"
+#include "random_bits.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define RANDOM_COUNT 200000
-#define NOT_A_NUMBER ((double)NAN)
-
-void setUp(void)
-{
-}
-
-void tearDown(void)
-{
-}
-
-/* SplitMix64 (G. Steele, D. Lea, C. Flood, 2014). */
-static uint64_t random_bits(uint64_t *state)
-{
-    uint64_t z = (*state += UINT64_C(0x9e3779b97f4a7c15));
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return z ^ (z >> 31);
-}
 
 static unsigned random_below(uint64_t *state, unsigned limit)
 {

@@ -16,66 +16,67 @@ static void test_programs_for_linuxcnc_stay_as_they_are(void)
     expect(DIALECT_LINUXCNC, text, text);
 }
 
+/* What a program is taken for, and the line that tells; 0: none does. */
+static const struct {
+    const char *text;
+    enum dialect dialect;
+    uint32_t line;
+} guesses[] = {
+    {"G21\nG1 X1 F100 (haas, fanuc, marlin)\nM30", DIALECT_LINUXCNC, 0},
+    {"O1000\nG43 H1 Z1\nM98 P1000\nG81 R1 Z-1\nM99", DIALECT_LINUXCNC, 0},
+    {"o<x> sub\nG69\n$H\no<x> endsub", DIALECT_LINUXCNC, 0},
+    {"#<x> = 3\nG28 X", DIALECT_LINUXCNC, 0},
+    {"G5.1 X1 Y1 I1 J1", DIALECT_LINUXCNC, 0},
+    {"M31\nM101", DIALECT_LINUXCNC, 0},
+    {"G21\n$H", DIALECT_GRBL, 2},
+    {"// mill\nG0 X1", DIALECT_GRBL, 1},
+    {"# mill\nG0 X1", DIALECT_GRBL, 1},
+    {"G1 X1.5e-17", DIALECT_GRBL, 1},
+    {"G2 X1 I1 J0 K0", DIALECT_GRBL, 1},
+    {"G0 X1\nG2 X2 CR=5", DIALECT_SIEMENS, 2},
+    {"N10 R1 = 5", DIALECT_SIEMENS, 1},
+    {"N20 DEF INT A=5\nX1", DIALECT_SIEMENS, 1},
+    {"G0 X1\nT=\"DRILL 8\"", DIALECT_SIEMENS, 2},
+    {"PROC BORE (REAL A)", DIALECT_SIEMENS, 1},
+    {"G0 X1\n#<CR>=5 (CR=5)", DIALECT_LINUXCNC, 0},
+    {"G0 X1 (T=\"DRILL\", GOTOF END)", DIALECT_LINUXCNC, 0},
+    {"G0 X1\nG28 X", DIALECT_MARLIN, 2},
+    {"G54.1 P2", DIALECT_FANUC, 1},
+    {"WHILE [#1 LT 3] DO1", DIALECT_FANUC, 1},
+    {"N1 IF[#1EQ1]GOTO 5", DIALECT_FANUC, 1},
+    {"G0 G28 G91 Z0.", DIALECT_FANUC, 1},
+    {":0100", DIALECT_FANUC, 1},
+    {"(VF2 HAAS)\nG54.1 P2", DIALECT_HAAS, 2},
+    {"G103 P1", DIALECT_HAAS, 1},
+    {"(Mach3)\nG69", DIALECT_MACH3, 2},
+    {"G92 E0\nG1 X1 E2", DIALECT_MARLIN, 1},
+    {"M104 S200", DIALECT_MARLIN, 1},
+    {"%O0003 (FIXTURE)\nG0 X1", DIALECT_FANUC, 1},
+    {"% (FIXTURE)\nG0 X1\n%", DIALECT_LINUXCNC, 0},
+    {"G28*77", DIALECT_GRBL, 1},
+    {"[BILLET X62 Z70\nG0 X1", DIALECT_FANUC, 1},
+    {"G0 X1\nMSG \"tool 3\"", DIALECT_GRBL, 2},
+    {"G71 G90\nG0 X1", DIALECT_FANUC, 1},
+    {"G71 Q100 D1 I2 R1", DIALECT_LINUXCNC, 0},
+    {"T1.1 M6", DIALECT_LINUXCNC, 0}, /* a mistake as likely */
+    {"G21 H1\nG96 D1000", DIALECT_LINUXCNC, 0},
+    {"H1\nT1.1\nG54.1 P2", DIALECT_FANUC, 3},
+    {"G4 X2.", DIALECT_FANUC, 1},
+    {"G1 X1\nG53 Z0", DIALECT_LINUXCNC, 0},
+    {"G53 Z0\nG1 X1", DIALECT_LINUXCNC, 0},
+    {"N10 N10 G0 X1", DIALECT_GRBL, 1},
+    {"M98 Q300", DIALECT_FANUC, 1},
+    {"G74 Z-40. Q5000", DIALECT_FANUC, 1},
+};
+
 static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
 {
-    static const struct {
-        const char *text;
-        enum dialect dialect;
-        uint32_t line;
-    } table[] = {
-        {"G21\nG1 X1 F100 (haas, fanuc, marlin)\nM30", DIALECT_LINUXCNC, 0},
-        {"O1000\nG43 H1 Z1\nM98 P1000\nG81 R1 Z-1\nM99", DIALECT_LINUXCNC, 0},
-        {"o<x> sub\nG69\n$H\no<x> endsub", DIALECT_LINUXCNC, 0},
-        {"#<x> = 3\nG28 X", DIALECT_LINUXCNC, 0},
-        {"G5.1 X1 Y1 I1 J1", DIALECT_LINUXCNC, 0},
-        {"M31\nM101", DIALECT_LINUXCNC, 0},
-        {"G21\n$H", DIALECT_GRBL, 2},
-        {"// mill\nG0 X1", DIALECT_GRBL, 1},
-        {"# mill\nG0 X1", DIALECT_GRBL, 1},
-        {"G1 X1.5e-17", DIALECT_GRBL, 1},
-        {"G2 X1 I1 J0 K0", DIALECT_GRBL, 1},
-        {"G0 X1\nG2 X2 CR=5", DIALECT_SIEMENS, 2},
-        {"N10 R1 = 5", DIALECT_SIEMENS, 1},
-        {"N20 DEF INT A=5\nX1", DIALECT_SIEMENS, 1},
-        {"G0 X1\nT=\"DRILL 8\"", DIALECT_SIEMENS, 2},
-        {"PROC BORE (REAL A)", DIALECT_SIEMENS, 1},
-        {"G0 X1\n#<CR>=5 (CR=5)", DIALECT_LINUXCNC, 0},
-        {"G0 X1 (T=\"DRILL\", GOTOF END)", DIALECT_LINUXCNC, 0},
-        {"G0 X1\nG28 X", DIALECT_MARLIN, 2},
-        {"G54.1 P2", DIALECT_FANUC, 1},
-        {"WHILE [#1 LT 3] DO1", DIALECT_FANUC, 1},
-        {"N1 IF[#1EQ1]GOTO 5", DIALECT_FANUC, 1},
-        {"G0 G28 G91 Z0.", DIALECT_FANUC, 1},
-        {":0100", DIALECT_FANUC, 1},
-        {"(VF2 HAAS)\nG54.1 P2", DIALECT_HAAS, 2},
-        {"G103 P1", DIALECT_HAAS, 1},
-        {"(Mach3)\nG69", DIALECT_MACH3, 2},
-        {"G92 E0\nG1 X1 E2", DIALECT_MARLIN, 1},
-        {"M104 S200", DIALECT_MARLIN, 1},
-        {"%O0003 (FIXTURE)\nG0 X1", DIALECT_FANUC, 1},
-        {"% (FIXTURE)\nG0 X1\n%", DIALECT_LINUXCNC, 0},
-        {"G28*77", DIALECT_GRBL, 1},
-        {"[BILLET X62 Z70\nG0 X1", DIALECT_FANUC, 1},
-        {"G0 X1\nMSG \"tool 3\"", DIALECT_GRBL, 2},
-        {"G71 G90\nG0 X1", DIALECT_FANUC, 1},
-        {"G71 Q100 D1 I2 R1", DIALECT_LINUXCNC, 0},
-        {"T1.1 M6", DIALECT_LINUXCNC, 0}, /* a mistake as likely */
-        {"G21 H1\nG96 D1000", DIALECT_LINUXCNC, 0},
-        {"H1\nT1.1\nG54.1 P2", DIALECT_FANUC, 3},
-        {"G4 X2.", DIALECT_FANUC, 1},
-        {"G1 X1\nG53 Z0", DIALECT_LINUXCNC, 0},
-        {"G53 Z0\nG1 X1", DIALECT_LINUXCNC, 0},
-        {"N10 N10 G0 X1", DIALECT_GRBL, 1},
-        {"M98 Q300", DIALECT_FANUC, 1},
-        {"G74 Z-40. Q5000", DIALECT_FANUC, 1},
-    };
+    for (size_t i = 0; i < sizeof guesses / sizeof guesses[0]; i++) {
+        const struct dialect_guess g = guess(guesses[i].text);
 
-    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
-        const struct dialect_guess g = guess(table[i].text);
-
-        TEST_ASSERT_EQUAL_STRING_MESSAGE(dialect_name(table[i].dialect), dialect_name(g.dialect),
-                                         table[i].text);
-        TEST_ASSERT_EQUAL_UINT32_MESSAGE(table[i].line, g.line, table[i].text);
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(dialect_name(guesses[i].dialect), dialect_name(g.dialect),
+                                         guesses[i].text);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(guesses[i].line, g.line, guesses[i].text);
     }
 }
 
@@ -438,64 +439,6 @@ static void test_lines_called_by_m97_are_programs_when_they_stand_behind_the_end
     expect(DIALECT_HAAS, "O1\nN30 G0 X1\nM97 P30\nM30\n", "O1\nN30 G0 X1\nM97 P30\nM30\n");
 }
 
-static void test_words_and_values_of_siemens(void)
-{
-    expect(DIALECT_SIEMENS, "N10 G1 X=R1+2*(R2-1) Y-2 CR=5 TURN=2 F=R3 ;x=1\n",
-           "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
-    expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
-    expect(DIALECT_SIEMENS, "DEF REAL TOP=2, LOW\nLOW=TOP-1\nZ=LOW\n",
-           "#<_def_top>=[2]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
-    expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
-           "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
-    expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
-           "T1 M6 \nG43 \nG49 \n G64  G53 \nG21 M2  \n");
-    expect(DIALECT_SIEMENS, "X=$P_EP[X]\nTRAORI\n", "X=$P_EP[X]\no<traori> call\n");
-}
-
-static void test_flow_of_siemens(void)
-{
-    expect(DIALECT_SIEMENS, "IF R1==2\nX1\nELSE\nX2\nENDIF\n",
-           "o98000001 if [#101 EQ 2]\nX1 \no98000001 else\nX2 \no98000001 endif\n");
-    expect(DIALECT_SIEMENS, "FOR R1=1 TO R2\nENDFOR\n",
-           "#101=[[1]-1]\n|o99000001 while [#101 LT [#102]]\n|#101=[#101+1]\n"
-           "o99000001 endwhile\n");
-    expect(DIALECT_SIEMENS, "REPEAT\nUNTIL R1>1\n",
-           "o99000001 do\no99000001 while [1-[#101 GT 1]]\n");
-    expect(DIALECT_SIEMENS, "GOTOF END\nX1\nEND: M30\n",
-           "o00000035 goto [00000003] [00]\nX1 \nM30 \n");
-    expect(DIALECT_SIEMENS, "L10 P2\nM30\n%_N_L10_SPF\nX1\nM17\n",
-           "o<l10> call\n|o<l10> call\nM30 \no<l10> sub\nX1 \no<l10> return\n|o<l10> endsub\n");
-}
-
-static void test_subprograms_of_siemens(void)
-{
-    expect(DIALECT_SIEMENS,
-           "BORE(1, ,R2+3)\nM30\nN1 PROC BORE (REAL TOP, INT N=2,VAR REAL R)\nX=TOP\n",
-           "o<bore> call [[1]] [0] [[#102+3]]\nM30 \n"
-           "o<bore> sub\n|#<_def_top>=#1\n|#<_def_n>=#2\n|#<_def_r>=#3\nX[#<_def_top>] \n"
-           "|o<bore> endsub\n");
-    expect(DIALECT_SIEMENS, "R1=80 R2=1.5 L903 P2\nL140(2)\n",
-           "#101=[80]\n|#102=[1.5]\n|o<l903> call\n|o<l903> call\no<l140> call [[2]]\n");
-    expect(DIALECT_SIEMENS, "CASE(R1-1) OF 2 GOTOF A DEFAULT GOTOF B\nA: X1\nB: X2\n",
-           "o98000001 if [[[#101-1]] EQ 2]\n|o00000152 goto [00000002] [00]\n|o98000001 endif\n"
-           "|o98000001 if [0 EQ 0]\n|o00000156 goto [00000003] [00]\n|o98000001 endif\nX1 \nX2 \n");
-}
-
-static void test_named_tools_have_numbers_of_the_machine_file(void)
-{
-    TEST_ASSERT_NULL(dialect_value_set(&codes, "TOOL_DRILL_8_5", "7"));
-    expect(DIALECT_SIEMENS, "T=\"Drill 8.5\" M6\nT=\"12\"\nT=\"X\"\n",
-           "T[7] M6 \nT12 \nT#<TOOL_X> \n");
-}
-
-static void test_orders_of_siemens(void)
-{
-    expect(DIALECT_SIEMENS, "MSG(\"a (b)\")\nTRANS X1\nTRANS\n",
-           "(msg,a [b])\nG52 X1 \nG52 X0 Y0 Z0\n");
-    expect(DIALECT_SIEMENS, "MCALL CYCLE82(50,0,2,-9,,1)\nG0 X1\nMCALL\n",
-           "G0 Z[50]\n   X1  G98 G82 R[[0]+[2]] Z[[[0-9]]] P[[1]]\nG80 G0\n");
-}
-
 static void test_a_byte_order_mark_is_no_part_of_the_program(void)
 {
     TEST_ASSERT_TRUE(guess("\xef\xbb\xbfG0 X1").translates);
@@ -551,11 +494,6 @@ int main(void)
     RUN_TEST(test_behind_a_cycle_goes_on_what_was_before_it);
     RUN_TEST(test_parameters_beyond_those_of_linuxcnc_have_names_and_begin_as_0);
     RUN_TEST(test_lines_called_by_m97_are_programs_when_they_stand_behind_the_end);
-    RUN_TEST(test_words_and_values_of_siemens);
-    RUN_TEST(test_flow_of_siemens);
-    RUN_TEST(test_subprograms_of_siemens);
-    RUN_TEST(test_named_tools_have_numbers_of_the_machine_file);
-    RUN_TEST(test_orders_of_siemens);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
     return UNITY_END();
 }

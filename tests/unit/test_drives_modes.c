@@ -2,42 +2,12 @@
  * Modes of operation of the drive but for homing: profile position, interpolated and cyclic position, and
  * what the option codes say of stopping. 1000 increments/mm, a cycle of 1 ms.
  */
-#include "lone_drive.h"
-
-#include <math.h>
-
-#define PP  1
-#define HM  6
-#define IP  7
-#define CSP 8
-
-#define ENABLE 0x000F
-#define NEW    0x0010
-#define NOW    0x0020
-#define REL    0x0040
-#define HALT   0x0100
+#include "drive_modes_bench.h"
 
 #define REACHED 0x0400
 #define BIT_12  0x1000
 #define BIT_13  0x2000
 #define LIMITED 0x0800 /* internal limit active */
-
-static struct lone_drive lone;
-
-void setUp(void)
-{
-    lone_set_default(&lone);
-    lone_start(&lone);
-}
-
-void tearDown(void)
-{
-}
-
-static double command_mm(void)
-{
-    return lone.drive.servo.loop.command_mm;
-}
 
 static void set_target(int32_t target_inc)
 {
@@ -293,14 +263,6 @@ static void test_without_a_rising_bit_4_nothing_moves(void)
     TEST_ASSERT_TRUE(command_mm() == 5);
 }
 
-/* ---- Cyclic and interpolated position ---- */
-
-static void target_by_pdo(int32_t target_inc)
-{
-    lone_take(&lone, 0x300 + LONE_NODE, 4, (uint32_t)target_inc, 0);
-    lone_sync(&lone);
-}
-
 /* 60C2 says that a target comes every 4 ms: the command is there in four cycles, in a straight line. */
 static void test_a_target_is_reached_in_the_interpolation_period(void)
 {
@@ -409,124 +371,6 @@ static void test_every_mode_of_6502_is_taken(void)
     }
 }
 
-static void run_at_40_mm_s(unsigned cycles)
-{
-    for (unsigned k = 1; k <= cycles; k++) {
-        target_by_pdo((int32_t)lround(1000 * command_mm()) + 40);
-        lone_step(&lone, 1);
-    }
-}
-
-static void test_a_change_of_mode_in_motion_slows_down_and_stands(void)
-{
-    lone_enable(&lone, CSP);
-    run_at_40_mm_s(200);
-    double from_mm = command_mm();
-    lone_control(&lone, ENABLE, PP);
-    lone_step(&lone, 1);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&lone.drive));
-    lone_step(&lone, 500);
-    TEST_ASSERT_TRUE(lone.drive.servo.loop.command_velocity_mm_s == 0);
-    TEST_ASSERT_TRUE(fabs(command_mm() - from_mm) < 2);
-}
-
-/* ---- Option codes ---- */
-
-static enum cia402_state state_after(unsigned cycles)
-{
-    lone_step(&lone, cycles);
-    return virtual_drive_get_state(&lone.drive);
-}
-
-/* 40 mm/s at 500 mm/s2: 80 ms and 1.6 mm. */
-static void test_disable_operation_slows_down_first(void)
-{
-    lone_enable(&lone, CSP);
-    run_at_40_mm_s(200);
-    double from_mm = command_mm();
-    lone_control(&lone, CIA402_SWITCH_ON, CSP);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(79));
-    TEST_ASSERT_EQUAL_INT(CIA402_SWITCHED_ON, state_after(2));
-    TEST_ASSERT_TRUE(fabs(command_mm() - from_mm - 1.6) < 0.05);
-}
-
-static void test_enable_operation_takes_disable_operation_back(void)
-{
-    lone_enable(&lone, CSP);
-    run_at_40_mm_s(200);
-    lone_control(&lone, CIA402_SWITCH_ON, CSP);
-    lone_step(&lone, 10);
-    lone_control(&lone, ENABLE, CSP);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(500));
-}
-
-static void test_shutdown_takes_the_torque_away_or_slows_down_as_605B_says(void)
-{
-    lone_enable(&lone, CSP);
-    run_at_40_mm_s(200);
-    lone_control(&lone, CIA402_SHUTDOWN, CSP);
-    TEST_ASSERT_EQUAL_INT(CIA402_READY, virtual_drive_get_state(&lone.drive));
-    setUp();
-    (void)lone_write(&lone, 0x605B, 0, 2, 1);
-    lone_enable(&lone, CSP);
-    run_at_40_mm_s(200);
-    lone_control(&lone, CIA402_SHUTDOWN, CSP);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(79));
-    TEST_ASSERT_EQUAL_INT(CIA402_READY, state_after(2));
-}
-
-static void quick_stop_with(uint32_t option)
-{
-    setUp();
-    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x605A, 0, 2, option));
-    lone_enable(&lone, CSP);
-    run_at_40_mm_s(200);
-    lone_control(&lone, CIA402_QUICK_STOP_NOW, CSP);
-    TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, virtual_drive_get_state(&lone.drive));
-}
-
-/* 40 mm/s: 20 ms at 2000 mm/s2, 80 ms at 500 mm/s2. */
-static void test_quick_stop_takes_its_ramp_and_its_end_from_605A(void)
-{
-    quick_stop_with(0);
-    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, state_after(1));
-    quick_stop_with(1);
-    TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, state_after(70));
-    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, state_after(100));
-    quick_stop_with(2);
-    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, state_after(70));
-    quick_stop_with(6);
-    TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, state_after(1000));
-    lone_control(&lone, ENABLE, CSP);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(100));
-}
-
-static void test_a_fault_takes_the_torque_away_at_once_if_605E_says_so(void)
-{
-    (void)lone_write(&lone, 0x605E, 0, 2, 0);
-    lone_enable(&lone, CSP);
-    target_by_pdo(5000);
-    lone_step(&lone, 1);
-    TEST_ASSERT_EQUAL_INT(CIA402_FAULT, state_after(1));
-}
-
-static void test_a_following_error_may_last_as_long_as_6066_says(void)
-{
-    (void)lone_write(&lone, 0x6065, 0, 4, 100);
-    (void)lone_write(&lone, 0x6066, 0, 2, 50);
-    lone.drive.plant.damage.is_jammed = true;
-    lone_enable(&lone, CSP);
-    target_by_pdo(500);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(50));
-    TEST_ASSERT_EQUAL_INT(CIA402_FAULT_REACTION, state_after(1));
-    setUp();
-    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6065, 0, 4, 0xFFFFFFFF));
-    lone_enable(&lone, CSP);
-    lone.drive.plant.damage.is_jammed = true;
-    target_by_pdo(500000);
-    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(500));
-}
-
 int main(void)
 {
     UNITY_BEGIN();
@@ -549,12 +393,5 @@ int main(void)
     RUN_TEST(test_interpolated_position_follows_60C1_while_bit_4_is_set);
     RUN_TEST(test_a_mode_the_drive_does_not_have_is_not_taken);
     RUN_TEST(test_every_mode_of_6502_is_taken);
-    RUN_TEST(test_a_change_of_mode_in_motion_slows_down_and_stands);
-    RUN_TEST(test_disable_operation_slows_down_first);
-    RUN_TEST(test_enable_operation_takes_disable_operation_back);
-    RUN_TEST(test_shutdown_takes_the_torque_away_or_slows_down_as_605B_says);
-    RUN_TEST(test_quick_stop_takes_its_ramp_and_its_end_from_605A);
-    RUN_TEST(test_a_fault_takes_the_torque_away_at_once_if_605E_says_so);
-    RUN_TEST(test_a_following_error_may_last_as_long_as_6066_says);
     return UNITY_END();
 }

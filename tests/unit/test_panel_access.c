@@ -1,56 +1,16 @@
 /*
  * What the panel lets anybody read, and how it slows down who guesses its password.
  */
-#include "panel/panel.h"
-#include "unity.h"
+#include "panel_bench.h"
 
-#include <string.h>
-
-static struct panel_snapshot shown;
-static struct panel panel;
-static struct panel_client one, other;
-static uint8_t data[2 * MODBUS_READ_WORDS_MAX];
-
-static void look(void *context, struct panel_snapshot *snapshot)
-{
-    (void)context;
-    *snapshot = shown;
-}
-
-static void hear(void *context)
-{
-    (void)context;
-}
-
-void setUp(void)
-{
-    const struct panel_config config = {.port = {.look = look, .alive = hear}, .password = 4711};
-
-    memset(&shown, 0, sizeof shown);
-    takt_panel_init(&panel, &config);
-    takt_panel_client_enter(&one, &panel);
-    takt_panel_client_enter(&other, &panel);
-}
-
-void tearDown(void)
-{
-}
-
-static enum modbus_exception give(struct panel_client *client, uint16_t password)
-{
-    const struct modbus_map map = takt_panel_client_map(client);
-    uint8_t bytes[4] = {0};
-
-    modbus_write16(bytes + 2, password);
-    return map.write(map.context, MODBUS_HOLDINGS, takt_panel_registers[REGISTER_PASSWORD].address,
-                     2, bytes);
-}
+#define PASSWORD 4711
 
 /* Panels that merge what they read do not know of gaps. */
 static void test_gaps_between_registers_read_as_0(void)
 {
     const struct modbus_map map = takt_panel_client_map(&one);
 
+    start_with(PASSWORD);
     shown.value[REGISTER_HOMED] = 7;
     shown.value[REGISTER_POSITION_X] = 12345;
     memset(data, 0xFF, sizeof data);
@@ -67,13 +27,14 @@ static unsigned cycles_of_silence(void)
 {
     const uint32_t first = shown.value[REGISTER_CYCLES];
 
-    while (give(&other, 1) == MODBUS_BUSY)
+    while (write_row(&other, REGISTER_PASSWORD, 1) == MODBUS_BUSY)
         shown.value[REGISTER_CYCLES] += 10;
     return shown.value[REGISTER_CYCLES] - first;
 }
 
 static void test_wrong_passwords_make_all_clients_wait_longer_and_longer(void)
 {
+    start_with(PASSWORD);
     shown.value[REGISTER_CYCLES] = UINT32_MAX - 500; /* wraps on the way */
     TEST_ASSERT_EQUAL_UINT(0, cycles_of_silence());
     TEST_ASSERT_EQUAL_UINT(1000, cycles_of_silence());
@@ -82,9 +43,9 @@ static void test_wrong_passwords_make_all_clients_wait_longer_and_longer(void)
     TEST_ASSERT_EQUAL_UINT(8000, cycles_of_silence());
     TEST_ASSERT_EQUAL_UINT(16000, cycles_of_silence());
     TEST_ASSERT_EQUAL_UINT(16000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, give(&one, 4711));
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&one, REGISTER_PASSWORD, PASSWORD));
     shown.value[REGISTER_CYCLES] += 16000;
-    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, give(&one, 4711));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_PASSWORD, PASSWORD));
     TEST_ASSERT_EQUAL_UINT(0, cycles_of_silence());
     TEST_ASSERT_EQUAL_UINT(1000, cycles_of_silence());
 }

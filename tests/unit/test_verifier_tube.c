@@ -2,105 +2,9 @@
  * The verifier of paths within a tolerance, against setpoints made by hand: it must follow what is right, and see what is
  * wrong.
  */
-#include "unity.h"
-#include "verifier/tube_verifier.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "tube_bench.h"
 
 #define PI 3.14159265358979323846
-
-/* Between two setpoints. */
-#define STEP_MM 0.02
-
-#define EXACT_MM 1e-3
-
-static struct parameters parameters;
-static struct source_text text;
-static struct tube_verifier verifier;
-static uint32_t motion; /* that is said to be executed */
-static char program_text[400000];
-
-void setUp(void)
-{
-    takt_parameters_clear(&parameters);
-    memset(&verifier, 0, sizeof verifier);
-    motion = UINT32_MAX / 2; /* none to be believed */
-}
-
-void tearDown(void)
-{
-    tube_verifier_free(&verifier);
-}
-
-static void begin_as(const char *program, bool waits)
-{
-    struct program_config config = {
-        .axes = 0x3f, .parameters = &parameters, .waits = waits, .spindle_encoder = true};
-    struct source source;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        config.travel_min[i] = -500;
-        config.travel_max[i] = 500;
-    }
-    tube_verifier_free(&verifier);
-    takt_source_open_text(&source, &text, program, strlen(program));
-    tube_verifier_init(&verifier, &config, &source, EXACT_MM);
-}
-
-static void begin(const char *program)
-{
-    begin_as(program, false);
-}
-
-static void to_point(const struct point *p)
-{
-    TEST_ASSERT_TRUE(tube_verifier_add(&verifier, p, motion));
-}
-
-static void jump_to(double x, double y)
-{
-    to_point(&(struct point){{x, y}});
-}
-
-/* Setpoints straight on. */
-static void go_to(double x, double y)
-{
-    const struct point from = verifier.has_next ? verifier.next : verifier.last;
-    const double way_x = x - from.at[AXIS_X];
-    const double way_y = y - from.at[AXIS_Y];
-    const int steps = (int)ceil(hypot(way_x, way_y) / STEP_MM);
-
-    for (int k = 1; k <= steps; k++)
-        jump_to(from.at[AXIS_X] + way_x * k / steps, from.at[AXIS_Y] + way_y * k / steps);
-}
-
-/* Around a centre; from one angle to another, radians. */
-static void go_around(double x, double y, double radius, double from, double to)
-{
-    const int steps = (int)ceil(fabs(to - from) * radius / STEP_MM);
-
-    for (int k = 0; k <= steps; k++) {
-        const double angle = from + (to - from) * k / steps;
-
-        jump_to(x + radius * cos(angle), y + radius * sin(angle));
-    }
-}
-
-static void finish_within(double path_part, double corner_part)
-{
-    tube_verifier_finish(&verifier);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, path_part, verifier.figures.path_part);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, corner_part, verifier.figures.corner_part);
-    TEST_ASSERT_EQUAL_DOUBLE(0, verifier.figures.beyond_mm);
-}
-
-static bool is_within(void)
-{
-    return verifier.figures.path_part <= 1 && verifier.figures.corner_part <= 1;
-}
 
 static void test_a_corner_cut_within_the_tolerance_is_measured(void)
 {
@@ -231,26 +135,6 @@ static void test_corners_in_the_wrong_order_are_seen(void)
     TEST_ASSERT_FALSE(is_within());
 }
 
-static void test_a_path_that_goes_back_on_itself_is_followed(void)
-{
-    begin("G64 P0.1\nF100\nG1 X10\nG1 X0.5\nG1 X9\n");
-    go_to(9.95, 0);
-    go_to(0.55, 0.02);
-    go_to(9, 0);
-    finish_within(0.2, 0.5385164807); /* hypot(0.05, 0.02) / 0.1 */
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 28, verifier.figures.path_length_mm);
-}
-
-static void test_a_way_there_and_back_that_is_left_out_is_seen(void)
-{
-    begin("G64 P0.1\nF100\nG1 X10\nG1 X10.5\nG1 X9\nG1 X9 Y5\n");
-    go_to(10, 0);
-    go_to(9, 0);
-    go_to(9, 5);
-    tube_verifier_finish(&verifier);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5, verifier.figures.corner_part);
-}
-
 /* Teeth lower than the tolerance: a straight line is as good, however many there are. */
 static void test_any_number_of_motions_within_the_tolerance_may_become_one(void)
 {
@@ -263,96 +147,6 @@ static void test_any_number_of_motions_within_the_tolerance_may_become_one(void)
     go_to(10, 0);
     TEST_ASSERT_TRUE(verifier.path.capacity <= 1024);
     finish_within(0, 0.5); /* every second end is on the line */
-}
-
-static void test_strokes_shorter_than_the_tolerance_may_be_left_out(void)
-{
-    begin("G64 P0.1\nF100\nG1 X1\nG1 X1.05\nG1 X1\nG1 X1.05\nG1 X1\nG1 X1.05\nG1 X1\nG1 X2\n");
-    go_to(2, 0);
-    finish_within(0, 0);
-}
-
-/* From 1 back by some tolerances, then on: a straight line passes both ends, but never the second after the first. */
-static void pass_stroke(double tolerances, double made)
-{
-    (void)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\nG1 X1\nG1 X%.6f\nG1 X2\n",
-                   1 - 0.1 * tolerances);
-    begin(program_text);
-    go_to(1 - 0.05 * (tolerances - made), 0);
-    go_to(1 - 0.05 * (tolerances + made), 0);
-    go_to(2, 0);
-    tube_verifier_finish(&verifier);
-}
-
-/* Whoever has not gone back is half of the stroke off at best: in its middle when the path is at its ends. */
-static void test_a_stroke_back_may_be_left_out_up_to_two_tolerances(void)
-{
-    pass_stroke(1.95, 0);
-    TEST_ASSERT_TRUE(is_within());
-    for (unsigned k = 0; k < 20; k++) {
-        pass_stroke(2.05 + 0.1 * k, 0);
-        TEST_ASSERT_FALSE(is_within());
-    }
-}
-
-/* On a circle of 10 mm about X-10, by arcs to these angles; gone around without going back. */
-static void pass_curved_stroke(double tolerances)
-{
-    const double angle[] = {1, 1 - 0.01 * tolerances, 2};
-    size_t size = (size_t)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\n");
-
-    for (unsigned k = 0; k < 3; k++)
-        size += (size_t)snprintf(program_text + size, sizeof program_text - size,
-                                 "G%d X%.9f Y%.9f R10\n", k == 1 ? 2 : 3, 10 * cos(angle[k]) - 10,
-                                 10 * sin(angle[k]));
-    begin(program_text);
-    go_around(-10, 0, 10, 0, 2);
-    tube_verifier_finish(&verifier);
-}
-
-static void test_a_stroke_back_is_verified_on_bends_as_on_lines(void)
-{
-    pass_curved_stroke(1.95);
-    TEST_ASSERT_TRUE(is_within());
-    for (unsigned k = 0; k < 20; k++) {
-        pass_curved_stroke(2.05 + 0.1 * k);
-        TEST_ASSERT_FALSE(is_within());
-    }
-}
-
-/* Likewise of one that is cut short: what is missing may be two tolerances in all. */
-static void test_a_stroke_back_may_be_cut_short_by_two_tolerances(void)
-{
-    for (unsigned k = 0; k < 20; k++) {
-        const double tolerances = 2.1 + 0.3 * k;
-
-        pass_stroke(tolerances, tolerances - 1.9);
-        TEST_ASSERT_TRUE(is_within());
-        pass_stroke(tolerances, tolerances - 2.1);
-        TEST_ASSERT_FALSE(is_within());
-    }
-}
-
-static void test_going_back_is_seen_from_two_tolerances_on(void)
-{
-    for (unsigned k = 0; k < 20; k++) {
-        begin("G64 P0.1\nF100\nG1 X10\n");
-        go_to(5, 0);
-        go_to(5 - 0.1 * (k == 0 ? 1.9 : 2 + 0.1 * k), 0);
-        go_to(10, 0);
-        tube_verifier_finish(&verifier);
-        TEST_ASSERT_EQUAL_INT(k == 0, is_within());
-    }
-}
-
-static void test_a_way_back_that_is_not_programmed_is_seen(void)
-{
-    begin("G64 P0.1\nF100\nG1 X10\n");
-    go_to(5, 0);
-    go_to(4, 0);
-    go_to(10, 0);
-    tube_verifier_finish(&verifier);
-    TEST_ASSERT_TRUE(verifier.figures.path_part > 6.5);
 }
 
 static void test_standing_changes_nothing(void)
@@ -533,15 +327,7 @@ int main(void)
     RUN_TEST(test_loops_in_the_wrong_order_are_seen);
     RUN_TEST(test_a_circle_the_wrong_way_round_is_seen);
     RUN_TEST(test_corners_in_the_wrong_order_are_seen);
-    RUN_TEST(test_a_path_that_goes_back_on_itself_is_followed);
-    RUN_TEST(test_a_way_there_and_back_that_is_left_out_is_seen);
     RUN_TEST(test_any_number_of_motions_within_the_tolerance_may_become_one);
-    RUN_TEST(test_strokes_shorter_than_the_tolerance_may_be_left_out);
-    RUN_TEST(test_a_stroke_back_may_be_left_out_up_to_two_tolerances);
-    RUN_TEST(test_a_stroke_back_is_verified_on_bends_as_on_lines);
-    RUN_TEST(test_a_stroke_back_may_be_cut_short_by_two_tolerances);
-    RUN_TEST(test_going_back_is_seen_from_two_tolerances_on);
-    RUN_TEST(test_a_way_back_that_is_not_programmed_is_seen);
     RUN_TEST(test_standing_changes_nothing);
     RUN_TEST(test_an_exact_motion_between_rounded_ones_must_be_exact);
     RUN_TEST(test_an_arc_is_measured_by_its_curve_and_not_by_chords);

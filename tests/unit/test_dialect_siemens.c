@@ -1,0 +1,74 @@
+/* host/dialect: the words, flow, subprograms and orders of Siemens. */
+#include "dialect_expect.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void test_words_and_values_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "N10 G1 X=R1+2*(R2-1) Y-2 CR=5 TURN=2 F=R3 ;x=1\n",
+           "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
+    expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
+    expect(DIALECT_SIEMENS, "DEF REAL TOP=2, LOW\nLOW=TOP-1\nZ=LOW\n",
+           "#<_def_top>=[2]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
+    expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
+           "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
+    expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
+           "T1 M6 \nG43 \nG49 \n G64  G53 \nG21 M2  \n");
+    expect(DIALECT_SIEMENS, "X=$P_EP[X]\nTRAORI\n", "X=$P_EP[X]\no<traori> call\n");
+}
+
+static void test_flow_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "IF R1==2\nX1\nELSE\nX2\nENDIF\n",
+           "o98000001 if [#101 EQ 2]\nX1 \no98000001 else\nX2 \no98000001 endif\n");
+    expect(DIALECT_SIEMENS, "FOR R1=1 TO R2\nENDFOR\n",
+           "#101=[[1]-1]\n|o99000001 while [#101 LT [#102]]\n|#101=[#101+1]\n"
+           "o99000001 endwhile\n");
+    expect(DIALECT_SIEMENS, "REPEAT\nUNTIL R1>1\n",
+           "o99000001 do\no99000001 while [1-[#101 GT 1]]\n");
+    expect(DIALECT_SIEMENS, "GOTOF END\nX1\nEND: M30\n",
+           "o00000035 goto [00000003] [00]\nX1 \nM30 \n");
+    expect(DIALECT_SIEMENS, "L10 P2\nM30\n%_N_L10_SPF\nX1\nM17\n",
+           "o<l10> call\n|o<l10> call\nM30 \no<l10> sub\nX1 \no<l10> return\n|o<l10> endsub\n");
+}
+
+static void test_subprograms_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS,
+           "BORE(1, ,R2+3)\nM30\nN1 PROC BORE (REAL TOP, INT N=2,VAR REAL R)\nX=TOP\n",
+           "o<bore> call [[1]] [0] [[#102+3]]\nM30 \n"
+           "o<bore> sub\n|#<_def_top>=#1\n|#<_def_n>=#2\n|#<_def_r>=#3\nX[#<_def_top>] \n"
+           "|o<bore> endsub\n");
+    expect(DIALECT_SIEMENS, "R1=80 R2=1.5 L903 P2\nL140(2)\n",
+           "#101=[80]\n|#102=[1.5]\n|o<l903> call\n|o<l903> call\no<l140> call [[2]]\n");
+    expect(DIALECT_SIEMENS, "CASE(R1-1) OF 2 GOTOF A DEFAULT GOTOF B\nA: X1\nB: X2\n",
+           "o98000001 if [[[#101-1]] EQ 2]\n|o00000152 goto [00000002] [00]\n|o98000001 endif\n"
+           "|o98000001 if [0 EQ 0]\n|o00000156 goto [00000003] [00]\n|o98000001 endif\nX1 \nX2 \n");
+}
+
+static void test_named_tools_have_numbers_of_the_machine_file(void)
+{
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "TOOL_DRILL_8_5", "7"));
+    expect(DIALECT_SIEMENS, "T=\"Drill 8.5\" M6\nT=\"12\"\nT=\"X\"\n",
+           "T[7] M6 \nT12 \nT#<TOOL_X> \n");
+}
+
+static void test_orders_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "MSG(\"a (b)\")\nTRANS X1\nTRANS\n",
+           "(msg,a [b])\nG52 X1 \nG52 X0 Y0 Z0\n");
+    expect(DIALECT_SIEMENS, "MCALL CYCLE82(50,0,2,-9,,1)\nG0 X1\nMCALL\n",
+           "G0 Z[50]\n   X1  G98 G82 R[[0]+[2]] Z[[[0-9]]] P[[1]]\nG80 G0\n");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_words_and_values_of_siemens);
+    RUN_TEST(test_flow_of_siemens);
+    RUN_TEST(test_subprograms_of_siemens);
+    RUN_TEST(test_named_tools_have_numbers_of_the_machine_file);
+    RUN_TEST(test_orders_of_siemens);
+    return UNITY_END();
+}
