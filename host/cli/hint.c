@@ -70,7 +70,13 @@ static const struct {
      "write the program with a postprocessor for this machine"},
     {"G68", "a turned program", "G10 L2 P1 R30 turns G54 by 30 degrees, R0 back"},
     {"G68.2", "a tilted plane", "write the program with a postprocessor for this machine"},
+    {"G47", "engraved text (Haas)", "the program that makes programs engraves text"},
+    {"G101", "a mirrored program (Haas)", "the program that makes programs mirrors them"},
     {"G150", "a pocket of any shape (Haas)", "the program that makes programs has pockets"},
+    {"G234", "the tool's tip led while rotary axes turn (Haas)",
+     "write the program with a postprocessor for this machine"},
+    {"G254", "a part that turns with its table (Haas)",
+     "write the program with a postprocessor for this machine"},
     {"M97", "a call of a line of this program (Haas)", "M98 P1000 calls O1000"},
 };
 
@@ -185,11 +191,22 @@ static const char *look_alike(const unsigned char *c, size_t left)
     return NULL;
 }
 
+/* 0 BEGIN PGM NAME MM */
+static bool is_plain_language(const char *line, size_t length)
+{
+    static _Thread_local struct line l;
+
+    return line_read(&l, line, length) &&
+           line_begins(l.text + strspn(l.text, "0123456789 "), "begin pgm ");
+}
+
 static void write_character(const char *line, size_t length, size_t at, char text[HINT_MAX])
 {
     const char *hint =
         at < length ? look_alike((const unsigned char *)line + at, length - at) : NULL;
 
+    if (hint == NULL && is_plain_language(line, length))
+        hint = "this is Heidenhain's plain language: have the program written in G codes (ISO)";
     if (hint != NULL)
         write(text, hint);
 }

@@ -49,6 +49,8 @@ static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
         {":0100", DIALECT_FANUC, 1},
         {"(VF2 HAAS)\nG54.1 P2", DIALECT_HAAS, 2},
         {"G103 P1", DIALECT_HAAS, 1},
+        {"G54.1 P2\nG187 P1", DIALECT_HAAS, 1},
+        {"G54.1 P2\nG187 P1\nG28 U0", DIALECT_FANUC, 1},
         {"(Mach3)\nG69", DIALECT_MACH3, 2},
         {"G92 E0\nG1 X1 E2", DIALECT_MARLIN, 1},
         {"M104 S200", DIALECT_MARLIN, 1},
