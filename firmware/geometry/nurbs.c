@@ -56,6 +56,9 @@ void takt_nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight)
 {
     double *p = n->point[n->points % NURBS_KEPT];
 
+    if (n->points == 0) {
+        memcpy(n->at_mm, at_mm, sizeof(n->at_mm));
+    }
     p[0] = weight * at_mm[0];
     p[1] = weight * at_mm[1];
     p[2] = weight;
@@ -82,7 +85,8 @@ void takt_nurbs_add_knot(struct nurbs *n, double knot)
         return;
     }
     n->at = knot_at(n, span_of(n));
-    n->within = n->at < knot_at(n, span_of(n) + 1);
+    /* The curve ends with the span of its last point, whatever knots come after it. */
+    n->within = span_of(n) < n->points && n->at < knot_at(n, span_of(n) + 1);
 }
 
 /* The value at u1 so often, else u0. */
@@ -209,10 +213,10 @@ static bool is_straight(const struct part *part, const struct place *from, const
     return true;
 }
 
-static void set_straight(const struct place *from, const struct place *to,
+static void set_straight(const double from_mm[2], const double to_mm[2],
                          struct curve_course *course)
 {
-    const double way[2] = {to->at[0] - from->at[0], to->at[1] - from->at[1]};
+    const double way[2] = {to_mm[0] - from_mm[0], to_mm[1] - from_mm[1]};
 
     *course = (struct curve_course){.length_mm = maths_sqrt(way[0] * way[0] + way[1] * way[1])};
     course->heading_rad[0] = course->heading_rad[1] = takt_maths_atan2(way[1], way[0]);
@@ -266,7 +270,10 @@ static bool fits(const struct part *part, const struct place *from, const struct
     return true;
 }
 
-/* From n->at to that parameter. False: it must be shorter. */
+/*
+ * From n->at to that parameter. False: it must be shorter. It begins where the last piece ends, less than
+ * CURVE_LENGTH_MIN_MM beside the curve: parts too short for a piece are passed over.
+ */
 static bool make_piece(const struct nurbs *n, double to, struct nurbs_piece *piece)
 {
     struct part part;
@@ -275,26 +282,48 @@ static bool make_piece(const struct nurbs *n, double to, struct nurbs_piece *pie
     cut(n, n->at, to, &part);
     look(&part, 0.0, &ends[0]);
     look(&part, 1.0, &ends[1]);
+    memcpy(ends[0].at, n->at_mm, sizeof(ends[0].at));
     memcpy(piece->end_mm, ends[1].at, sizeof(piece->end_mm));
-    if (is_straight(&part, &ends[0], &ends[1])) {
-        set_straight(&ends[0], &ends[1], &piece->course);
+    piece->course.length_mm = length_of(&part);
+    if (piece->course.length_mm < CURVE_LENGTH_MIN_MM || is_straight(&part, &ends[0], &ends[1])) {
+        set_straight(ends[0].at, ends[1].at, &piece->course);
         return true;
     }
-    piece->course.length_mm = length_of(&part);
     return set_end(&ends[0], 0, &piece->course) && set_end(&ends[1], 1, &piece->course) &&
            fits(&part, &ends[0], &ends[1], &piece->course);
 }
 
-/* A part without length, of equal points, is none. */
+/* A part without length, of equal points, is none: the next one begins where it does. */
 static bool take_piece(struct nurbs *n, double to, const struct nurbs_piece *piece)
 {
     n->at = to;
     n->within = to < knot_at(n, span_of(n) + 1);
+    if (piece->course.length_mm < CURVE_LENGTH_MIN_MM) {
+        return false;
+    }
+    memcpy(n->at_mm, piece->end_mm, sizeof(n->at_mm));
+    return true;
+}
+
+/* From the first control point to where the curve begins. False: it begins there. */
+static bool lead(const struct nurbs *n, struct nurbs_piece *piece)
+{
+    const double u[2] = {n->at, n->at};
+    double begin[3];
+
+    blossom(n, u, 0, begin);
+    piece->end_mm[0] = begin[0] / begin[2];
+    piece->end_mm[1] = begin[1] / begin[2];
+    set_straight(n->at_mm, piece->end_mm, &piece->course);
     return piece->course.length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
 enum nurbs_result takt_nurbs_next(struct nurbs *n, struct nurbs_piece *piece)
 {
+    if (n->within && lead(n, piece)) {
+        memcpy(n->at_mm, piece->end_mm, sizeof(n->at_mm));
+        return NURBS_PIECE;
+    }
     while (n->within) {
         const double end = knot_at(n, span_of(n) + 1);
         double way = end - n->at;

@@ -3,7 +3,8 @@
  * NURBS_ERROR_MM of the curve.
  *
  * A knot decides a span when the points and knots before it are known, so only 2 order - 1 of each are kept, however many
- * there are.
+ * there are. A curve whose first knots are not all equal does not begin at its first control point: a straight piece leads
+ * from there to where it does.
  */
 #ifndef TAKT_GEOMETRY_NURBS_H
 #define TAKT_GEOMETRY_NURBS_H
@@ -25,14 +26,15 @@ struct nurbs {
     uint32_t order;              /* degree + 1 */
     uint32_t points, knots;      /* that have come */
     bool within;                 /* the span of the newest knot is not finished */
+    double at_mm[2];             /* where the last piece ends; before the first the first point */
     double at;                   /* parameter up to which there are pieces */
     double point[NURBS_KEPT][3]; /* both coordinates times the weight, and the weight */
     double knot[NURBS_KEPT];
 };
 
 struct nurbs_piece {
-    double end_mm
-        [2]; /* it begins where the one before ends, the first at the first point of the curve */
+    double
+        end_mm[2]; /* it begins where the one before ends, the first at the first control point */
     struct curve_course course;
 };
 

@@ -3,6 +3,7 @@
 #include "dialect/dialect.h"
 #include "dialect/line.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,8 +46,10 @@ static const struct hint hints[] = {
     {TAKT_ERROR_SPINDLE_NO_ENCODER, "encoder_counts in [spindle] of the machine file"},
 };
 
-/* Codes of other controllers that move something: to leave them out would cut something else. */
-static const struct {
+#define LAST_OFFSETS "G54 to G59.3 are there: G10 L2 P7 X10 sets G59.1, P8 and P9 the last two"
+
+/* Codes of other controllers that move something: to leave them out would cut something else, or elsewhere. ?: any digit. */
+static const struct moving {
     const char *word;
     const char *meaning;
     const char *cure;
@@ -55,6 +58,7 @@ static const struct {
     {"G13", "a round pocket (Haas)", "G13 I5. F200 is read with --dialect haas"},
     {"G12.1", "a face cut by turning C", "C and X of one path are not calculated here"},
     {"G112", "a face cut by turning C", "C and X of one path are not calculated here"},
+    {"G113", "a face cut by turning C", "C and X of one path are not calculated here"},
     {"G7.1", "a path on a cylinder", "C and Z of one path are not calculated here"},
     {"G107", "a path on a cylinder", "C and Z of one path are not calculated here"},
     {"G16", "polar coordinates", "@10 ^30 is 10 from the origin at 30 degrees"},
@@ -64,32 +68,58 @@ static const struct {
      "write the program with a postprocessor for this machine"},
     {"G43.5", "the tool's tip led while rotary axes turn",
      "write the program with a postprocessor for this machine"},
+    {"G54.1", "a work offset beyond P3", LAST_OFFSETS},
+    {"G154", "a work offset beyond P3 (Haas)", LAST_OFFSETS},
+    {"G11?", "a work offset beyond G59.3 (Haas)", LAST_OFFSETS},
+    {"G12?", "a work offset beyond G59.3 (Haas)", LAST_OFFSETS},
     {"G51", "a scaled program", "the program that makes programs scales them"},
     {"G51.1", "a mirrored program", "the program that makes programs mirrors them"},
     {"G53.1", "the tool turned upright on a tilted plane",
      "write the program with a postprocessor for this machine"},
     {"G68", "a turned program", "G10 L2 P1 R30 turns G54 by 30 degrees, R0 back"},
     {"G68.2", "a tilted plane", "write the program with a postprocessor for this machine"},
+    {"G47", "engraved text (Haas)", "the program that makes programs engraves text"},
+    {"G101", "a mirrored program (Haas)", "the program that makes programs mirrors them"},
     {"G150", "a pocket of any shape (Haas)", "the program that makes programs has pockets"},
+    {"G234", "the tool's tip led while rotary axes turn (Haas)",
+     "write the program with a postprocessor for this machine"},
+    {"G254", "a part that turns with its table (Haas)",
+     "write the program with a postprocessor for this machine"},
     {"M97", "a call of a line of this program (Haas)", "M98 P1000 calls O1000"},
 };
 
-const char *hint_meaning(const struct diagnostic *d)
+static bool is_like(const char *pattern, const char *word)
+{
+    while (*pattern != '\0' &&
+           (*pattern == *word || (*pattern == '?' && isdigit((unsigned char)*word)))) {
+        pattern++;
+        word++;
+    }
+    return *pattern == '\0' && *word == '\0';
+}
+
+/* The first row that a word is like; NULL: none. */
+static const struct moving *moving_of(const char *word)
 {
     for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
-        if (d->code == TAKT_ERROR_WORD_UNKNOWN && strcmp(moving[i].word, d->word) == 0)
-            return moving[i].meaning;
+        if (is_like(moving[i].word, word))
+            return &moving[i];
     }
     return NULL;
 }
 
+const char *hint_meaning(const struct diagnostic *d)
+{
+    const struct moving *row = d->code == TAKT_ERROR_WORD_UNKNOWN ? moving_of(d->word) : NULL;
+
+    return row != NULL ? row->meaning : NULL;
+}
+
 static const char *cure_of(const char *word)
 {
-    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
-        if (strcmp(moving[i].word, word) == 0)
-            return moving[i].cure;
-    }
-    return NULL;
+    const struct moving *row = moving_of(word);
+
+    return row != NULL ? row->cure : NULL;
 }
 
 static const char *find(enum takt_error code)
@@ -185,11 +215,22 @@ static const char *look_alike(const unsigned char *c, size_t left)
     return NULL;
 }
 
+/* 0 BEGIN PGM NAME MM */
+static bool is_plain_language(const char *line, size_t length)
+{
+    static _Thread_local struct line l;
+
+    return line_read(&l, line, length) &&
+           line_begins(l.text + strspn(l.text, "0123456789 "), "begin pgm ");
+}
+
 static void write_character(const char *line, size_t length, size_t at, char text[HINT_MAX])
 {
     const char *hint =
         at < length ? look_alike((const unsigned char *)line + at, length - at) : NULL;
 
+    if (hint == NULL && is_plain_language(line, length))
+        hint = "this is Heidenhain's plain language: have the program written in G codes (ISO)";
     if (hint != NULL)
         write(text, hint);
 }

@@ -32,6 +32,7 @@ static void note(struct look *k, unsigned dialects, const struct line_word *w)
     const int length = w != NULL ? w->end - w->begin : (int)strcspn(k->line.text, "\r");
     const char *text = w != NULL ? &k->line.text[w->begin] : k->line.text;
 
+    k->d->alone |= (dialects & (dialects - 1)) == 0 ? dialects : 0;
     for (unsigned i = 0; i < DIALECT_COUNT; i++) {
         if ((dialects & BIT(i)) != 0 && k->d->found_line[i] == 0) {
             k->d->found_line[i] = k->d->line;
@@ -148,7 +149,7 @@ static void look_at_code(struct look *k, struct line_word *w)
     }
     if (w->letter == 'g' && (number == 120 || number == 130) && line_find(&k->line, 'i', 0) != NULL)
         note(k, BIT(DIALECT_HAAS), w);
-    if (w->letter == 'g' && number == 1540)
+    if (w->letter == 'g' && (number == 1540 || number == 2340 || number == 2540))
         note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && number == 500 && line_find(&k->line, 's', 0) == NULL)
         note(k, INDUSTRY, w);
@@ -205,6 +206,7 @@ static void look_at_word(struct look *k, struct line_word *w)
 
     if (w->kind == WORD_COMMENT)
         read_comment(k, w);
+    k->d->translates = k->d->translates || line_runs_python(l, w);
     if (w->kind == WORD_KEYWORD)
         note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), w);
     if (w->kind == WORD_ASSIGNED && l->text[w->begin + 1] == '<')
@@ -455,7 +457,7 @@ struct dialect_guess dialect_guess_end(const struct dialect_detector *d)
     if ((found & d->named) != 0)
         found &= d->named;
     if (found == INDUSTRY || found == (BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS)))
-        found = BIT(DIALECT_FANUC);
+        found = (d->alone & found) == BIT(DIALECT_HAAS) ? BIT(DIALECT_HAAS) : BIT(DIALECT_FANUC);
     for (size_t i = 0; i < sizeof order / sizeof order[0] && guess.line == 0; i++) {
         if ((found & BIT(order[i])) != 0) {
             guess.dialect = order[i];

@@ -107,7 +107,8 @@ struct dialect_detector {
     uint32_t bare_line; /* axis words before that; 0: none */
     char bare[32];
     bool linuxcnc;  /* it has what only LinuxCNC knows */
-    unsigned named; /* bits: dialects its comments name */
+    unsigned named; /* bits: dialects its comments name, */
+    unsigned alone; /* and those of which it has what no other dialect has */
     struct dialect_arcs arcs;
     uint32_t found_line[DIALECT_COUNT]; /* 0: nothing */
     char found[DIALECT_COUNT][32];

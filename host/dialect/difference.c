@@ -45,6 +45,8 @@ static const struct difference rows[] = {
     /* the same by another name */
     CODE(FANUC | HAAS, 'g', 310, DIFFERENCE_REPLACE, "G38.3"),
     CODE(FANUC | HAAS, 'm', 190, DIFFERENCE_REPLACE, "M19 R0"),
+    CODE(HAAS, 'g', 1100, DIFFERENCE_REPLACE, "G59.1"),
+    CODE(HAAS, 'g', 1110, DIFFERENCE_REPLACE, "G59.2"),
     CODE(HAAS, 'm', 880, DIFFERENCE_REPLACE, "M7"),
     CODE(HAAS, 'm', 890, DIFFERENCE_REPLACE, "M9"),
     CODE(MARLIN, 'm', 6000, DIFFERENCE_REPLACE, "M0"),

@@ -321,6 +321,14 @@ const char *line_message(const struct line *l, size_t *length)
     return &l->text[quote + 1];
 }
 
+bool line_runs_python(const struct line *l, const struct line_word *w)
+{
+    const char *text = &l->text[w->begin + 1];
+
+    text += strspn(text, " ");
+    return w->kind == WORD_COMMENT && (line_begins(text, "py,") || line_begins(text, "pyrun,"));
+}
+
 bool line_is_directive(const struct line *l)
 {
     const size_t at = skip_spaces(l, 0);

@@ -89,6 +89,9 @@ const char *line_message(const struct line *l, size_t *length);
 /* PRINT_START BED=60, as Klipper has it: a name of three letters or more begins the line. 0: no such line. */
 size_t line_macro_length(const struct line *l);
 
+/* (py, ...) and (pyrun, ...), which have LinuxCNC run Python. */
+bool line_runs_python(const struct line *l, const struct line_word *w);
+
 /* [BILLET X62 Z70: what a simulator is told of the stock. */
 bool line_is_directive(const struct line *l);
 

@@ -276,6 +276,18 @@ static void translate_dwell(struct translator *t)
 
 /* ---- a line ---- */
 
+static void note_python(struct translator *t)
+{
+    for (unsigned i = 0; i < t->line.words; i++) {
+        struct line_word w = t->line.word[i];
+
+        if (line_runs_python(&t->line, &w)) {
+            w.end = (uint16_t)(strchr(&t->line.text[w.begin], ',') - t->line.text);
+            translate_note(t, &w, "Python");
+        }
+    }
+}
+
 static void translate_foreign(struct translator *t)
 {
     if (translate_is(t, TRANSLATE_SIEMENS))
@@ -359,6 +371,7 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
     if (translate_is(t, TRANSLATE_NOT_FOREIGN)) {
         motion_follow_modes(t);
         codes_translate(t);
+        note_python(t);
     } else {
         translate_foreign(t);
     }

@@ -104,6 +104,16 @@ t.write("tilted.nc", "G68.2 X0 Y0 J30.\nG43.4 H1\nG1 B5\n")
 status, found, err = moves("tilted.nc")
 t.check(status == 2 and "tilted.nc:1:1: error: 'G68.2' is not supported: a tilted plane\n" in err and "ignore" not in err,
         "a tilted plane", err)
+t.write("table.nc", "G254\nG1 X5 F100\n")
+status, found, err = moves("table.nc")
+t.check(status == 2 and "table.nc:1:1: error: 'G254' is not supported: a part that turns with its table (Haas)\n" in err and
+        "ignore" not in err, "a turning part", err)
+
+for code in ("G54.1 P7", "G154 P5", "G114", "G129"):
+    t.write("far.nc", f"(HAAS)\n{code}\nG0 X1\n")
+    status, found, err = moves("far.nc", "--dialect", "haas")
+    t.check(status == 2 and f"far.nc:2:1: error: '{code.split()[0]}' is not supported: a work offset beyond" in err and
+            "G10 L2 P7" in err and "ignore" not in err, "an offset that is not there", err)
 
 # Errors stand where they are in the program as it was found.
 t.write("wrong.nc", "G54.1 P1\nIF[#1 EQ 0] THEN  G0 X1 Q3\nM30\n")
@@ -156,6 +166,13 @@ status, found, err = moves("print.gcode")
 t.check(status == 0 and found == [rapid(0), rapid(0), "feed X5.000000 Y0.000000 Z0.000000 F600.000000", "end"],
         "a printer", found, err)
 t.check(err.count("'M104' is left out (marlin: temperature)") == 1, "what is left out is told once", err)
+
+# What LinuxCNC has Python do is not done without a word.
+t.write("python.ngc", ";py,import interpreter\n( PYRUN,change.py)\n(copy, nothing)\n;py,this.params[1] = 2\nG0 X1\nM2\n")
+status, found, err = moves("python.ngc")
+t.check(status == 0 and found == [rapid(1), "end"] and err.splitlines() == [
+    "python.ngc:1:1: warning: ';py' is left out (linuxcnc: Python)",
+    "python.ngc:2:1: warning: '( PYRUN' is left out (linuxcnc: Python)"], "comments that run Python", found, err)
 
 # Codes that only the owner of a machine can know: the message has the line to add.
 t.write("codes.ngc", "G21\nG0 X1 M31\nM32 P2 (conveyor)\nM33\nM34\nM2\n")

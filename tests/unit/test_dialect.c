@@ -48,6 +48,8 @@ static const struct {
     {":0100", DIALECT_FANUC, 1},
     {"(VF2 HAAS)\nG54.1 P2", DIALECT_HAAS, 2},
     {"G103 P1", DIALECT_HAAS, 1},
+    {"G54.1 P2\nG187 P1", DIALECT_HAAS, 1},
+    {"G54.1 P2\nG187 P1\nG28 U0", DIALECT_FANUC, 1},
     {"(Mach3)\nG69", DIALECT_MACH3, 2},
     {"G92 E0\nG1 X1 E2", DIALECT_MARLIN, 1},
     {"M104 S200", DIALECT_MARLIN, 1},
@@ -152,11 +154,6 @@ static void test_dwells_in_milliseconds_become_seconds(void)
     expect(DIALECT_FANUC, "G4 P500\nG4 P1.5\nG4 X2.\nG4 P2\n",
            "G4 P0.500000\nG4 P1.5\nG4 P2.000000\nG4 P2\n");
     expect(DIALECT_MARLIN, "G4 P50\nG4 S2\n", "G4 P0.050000\nG4 P2.000000\n");
-}
-
-static void test_more_systems_are_the_last_ones_here(void)
-{
-    expect(DIALECT_FANUC, "G54.1 P2 X1\nG54 P3\n", "G59.2    X1\nG59.3   \n");
 }
 
 static void test_turning_has_diameters_and_limits_of_speed(void)
@@ -467,7 +464,6 @@ int main(void)
     RUN_TEST(test_a_jump_to_nowhere_is_told);
     RUN_TEST(test_macros_are_called_with_their_arguments);
     RUN_TEST(test_dwells_in_milliseconds_become_seconds);
-    RUN_TEST(test_more_systems_are_the_last_ones_here);
     RUN_TEST(test_turning_has_diameters_and_limits_of_speed);
     RUN_TEST(test_printers_leave_their_way);
     RUN_TEST(test_declared_codes_do_what_the_machine_file_says);

@@ -1,6 +1,12 @@
 /* host/dialect: what shops write: turrets, drilling and threads of lathes, polar coordinates, macros of printers. */
 #include "dialect_expect.h"
 
+static void test_more_systems_are_the_last_ones_here(void)
+{
+    expect(DIALECT_FANUC, "G54.1 P2 X1\nG54 P3\n", "G59.2    X1\nG59.3   \n");
+    expect(DIALECT_HAAS, "G154 P1\nG110\nG111\n", "G59.1   \nG59.1\nG59.2\n");
+}
+
 static void test_a_turret_turns_under_a_turning_spindle(void)
 {
     expect(DIALECT_FANUC, "G50 S9\nM3 S9\nT0202\nM5\nT0303\nT0404 M4\nT0505 M6\n",
@@ -102,6 +108,7 @@ static void test_names_that_another_program_sets_can_be_declared(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_more_systems_are_the_last_ones_here);
     RUN_TEST(test_a_turret_turns_under_a_turning_spindle);
     RUN_TEST(test_the_limit_of_speed_can_stand_beside_g92);
     RUN_TEST(test_cycles_without_r_drill_from_where_the_tool_is);

@@ -386,6 +386,58 @@ static void test_a_cusp_is_passed(void)
     TEST_ASSERT_TRUE(pieces < 400);
 }
 
+/* Knots that differ by decades make parts shorter than a piece may be; what is passed over must not stretch the next. */
+static void test_pieces_are_even_beside_parts_too_short_for_a_piece(void)
+{
+    struct whole w;
+
+    for (unsigned i = 0; i < 40; i++) {
+        double knot = 0.0;
+
+        pieces = 0;
+        set_random(&w, 3 + i % 4, 16, 3.0, true);
+        for (unsigned k = w.order; k < w.count + w.order; k++) {
+            knot += k <= w.count ? takt_maths_exp(random_between(-7.0, 7.0)) : 0.0;
+            w.knot[k] = knot;
+        }
+        divide(&w);
+        for (unsigned k = 0; k < pieces; k++) {
+            struct point t;
+
+            takt_curve_tangent(&piece[k], 0.5 * piece[k].length_mm, &t);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-6, 1.0, maths_sqrt(t.at[0] * t.at[0] + t.at[1] * t.at[1]));
+        }
+    }
+}
+
+/* Even knots from the first on: the curve of order 3 begins and ends in the middle between two control points. */
+static void test_a_straight_piece_leads_to_a_curve_that_does_not_begin_at_its_first_point(void)
+{
+    struct point at = {{4, 0}};
+    struct nurbs n;
+
+    takt_nurbs_open(&n, 3);
+    for (unsigned i = 0; i < 6; i++) {
+        static const double point[3][2] = {{4, 0}, {8, 0}, {8, 6}};
+
+        if (i < 3) {
+            takt_nurbs_add_point(&n, point[i], 1.0);
+        }
+        takt_nurbs_add_knot(&n, i);
+        TEST_ASSERT_EQUAL_INT(NURBS_NONE, take_pieces(&n, &at));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 6.0, piece[0].end.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.0, piece[0].length_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 8.0, at.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3.0, at.at[AXIS_Y]);
+    for (unsigned i = 0; i < pieces; i++) {
+        struct curve_bounds b;
+
+        takt_curve_bound(&piece[i], &b);
+        TEST_ASSERT_TRUE(b.first[AXIS_X] < 1.1);
+    }
+}
+
 static void test_the_place_where_a_piece_turns_back_is_its_farthest(void)
 {
     const struct curve_course course = {
@@ -413,6 +465,8 @@ int main(void)
     RUN_TEST(test_bounds_hold_everywhere_and_are_no_wider_than_they_need_be);
     RUN_TEST(test_repeated_control_points_are_passed);
     RUN_TEST(test_a_cusp_is_passed);
+    RUN_TEST(test_pieces_are_even_beside_parts_too_short_for_a_piece);
+    RUN_TEST(test_a_straight_piece_leads_to_a_curve_that_does_not_begin_at_its_first_point);
     RUN_TEST(test_the_place_where_a_piece_turns_back_is_its_farthest);
     return UNITY_END();
 }
