@@ -10,10 +10,9 @@
  *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
  *     9 - 12 TPDO1-4 anew, if they have found no such place: each in one of its own, without SYNC by the timer, once a cycle
  *
- * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that is
- * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its identifier,
- * type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case of its own, and what is in a frame
- * beside what takt knows keeps the value that the drive has for it.
+ * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that
+ * is refused is left out, and so is the last one as long as their number is. Is anything else refused, what is in it counts, wherever
+ * that is: identifier, type, entries. So fixed PDOs need no case of their own, and values that takt does not know stay as they are.
  */
 #include "base/assert.h"
 #include "canopen/cia402.h"

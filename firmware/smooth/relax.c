@@ -11,6 +11,8 @@
  */
 #include "smooth/relax.h"
 
+#include "smooth/relax_corners.h"
+
 #include "base/assert.h"
 #include "smooth/bands.h"
 #include "smooth/single.h"
@@ -28,15 +30,6 @@
 
 /* How much less acceleration and jerk are preferred to more, inside their boxes. */
 #define BOX_WEIGHT 0.3f
-
-/* Nor do those that leave the chord of two samples by a small part of the tolerance: turn times spacing. */
-#define CORNER_LEAVES 0.5f
-
-/* Corners that turn less need no condition of their own. */
-#define CORNER_MIN 0.005f
-
-/* A mean direction shorter than this belongs to a reversal. */
-#define REVERSAL 0.3f
 
 /* Rows that count more than this, relative to the tolerance, would leave too few digits. */
 #define SCALE_MAX 300.0f
@@ -115,80 +108,6 @@ static void set_scale(struct relax_scale *s, const struct window *w, const struc
     }
     for (unsigned g = 0; g < r->slots.groups; g++) {
         set_rows(s, r, g, tolerance_mm, d);
-    }
-}
-
-static void set_along(struct relax_corners *c, const struct route *r, uint32_t element)
-{
-    float before[AXIS_COUNT];
-    float after[AXIS_COUNT];
-    float square = 0.0f;
-
-    takt_route_corner(r, element, before, after);
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        before[i] += after[i];
-        square += before[i] * before[i];
-    }
-    const float length = single_sqrt(square);
-    const float per_length = length > REVERSAL ? 1.0f / length : 0.0f;
-
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        c->along[i / SMOOTH_LANES * c->capacity + c->count][i % SMOOTH_LANES] =
-            before[i] * per_length;
-    }
-}
-
-static void set_spot(struct relax_corners *c, const struct window *w, const struct route *r,
-                     uint32_t element)
-{
-    struct window_spot spot;
-
-    takt_window_nearest(w, r, route_start(r, element), &spot);
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        c->spot[i / SMOOTH_LANES * c->capacity + c->count][i % SMOOTH_LANES] = spot.at[i];
-    }
-}
-
-/* Where the curve passes the start of an element: the piece and the fraction by the places of its samples. */
-static void add_corner(struct relax_corners *c, const struct window *w, const struct route *r,
-                       uint32_t element, unsigned *sample)
-{
-    const double at = route_element(r, element)->start_mm;
-    unsigned i = *sample;
-
-    TAKT_ASSERT(c->count < c->capacity);
-    while (i + 2 < w->count && w->at_mm[i + 1] <= at) {
-        i++;
-    }
-    *sample = i;
-    if (i + 2 >= w->count || w->at_mm[i] > at) {
-        return;
-    }
-    const float spacing = (float)(w->at_mm[i + 1] - w->at_mm[i]);
-
-    if (route_turn(r, element) * spacing < CORNER_LEAVES * (float)r->tolerance_mm) {
-        return;
-    }
-    c->piece[c->count] = (unsigned char)(i - 1);
-    takt_window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
-    set_along(c, r, element);
-    set_spot(c, w, r, element);
-    c->count++;
-}
-
-static void find_corners(struct relax_corners *c, const struct window *w, const struct route *r)
-{
-    unsigned sample = 1;
-
-    memset(c, 0, sizeof(*c));
-    c->capacity = RELAX_CORNERS_MAX / r->slots.groups;
-    for (uint32_t e = w->element[1] + 1; e < r->count && c->count < c->capacity; e++) {
-        if (route_element(r, e)->start_mm > w->at_mm[w->count - 2]) {
-            return;
-        }
-        if (route_turn(r, e) > CORNER_MIN) {
-            add_corner(c, w, r, e, &sample);
-        }
     }
 }
 
@@ -533,7 +452,7 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     struct relax_ahead ahead = {.element = UINT32_MAX};
 
     set_scale(&x->scale, w, r, tolerance_mm);
-    find_corners(&x->corners, w, r);
+    takt_relax_find_corners(&x->corners, w, r);
     memset(x->near, 0, sizeof x->near);
     memset(x->bend, 0, sizeof x->bend);
     memset(x->twist, 0, sizeof x->twist);

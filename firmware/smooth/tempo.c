@@ -11,7 +11,7 @@
  * sum 1/sqrt(b) - mu sum log(slack)  while mu falls. What is exceeded to begin with may stay so far off but no farther, and is
  * drawn inside. So every iteration keeps what the one before kept.
  */
-#include "smooth/tempo.h"
+#include "smooth/tempo_begin.h"
 
 #include "base/assert.h"
 #include "smooth/single.h"
@@ -29,20 +29,12 @@
 /* Part of the way to the first limit in its direction that a step goes. */
 #define STEP_PART 0.95f
 
-/* Rates between 0.15 and 1.5: what is farther off is left to the next window. */
-#define RATE_SQUARED_MIN  0.0225f
-#define RATE_SQUARED_MOST 2.25f
-
 /* The barrier's weight where a limit is exceeded, at least. */
 #define DRAWN 0.03f
 
 /* Where a row is nearer to its limit than this, that is so much farther off. */
 #define NEAR    0.98f
 #define FARTHER 1.02f
-
-/* New samples are put on the curve from outside: that takes some of the jerk, and as much acceleration of an interval. */
-#define TWIST_PART 0.95f
-#define TWIST_BEND 0.5f
 
 /* What pieces need of an axis and what it has for that, in parts of what it may; how the need hangs on three coefficients. */
 struct row {
@@ -403,66 +395,6 @@ static float part_of_step(struct tempo *p, const struct route *r)
     return STEP_PART * t;
 }
 
-/* b <= (V/x')^2 and (F/|x'|)^2 of every piece that the coefficient belongs to. */
-static void set_most(struct tempo *p, const struct window *w, const struct route *r)
-{
-    for (unsigned i = 0; i < p->pieces + 2; i++) {
-        p->most[i] = RATE_SQUARED_MOST;
-    }
-    for (unsigned i = 0; i < p->pieces; i++) {
-        struct verifier_need need;
-
-        takt_verifier_need(w, r, i, &need);
-        float feed = single_min(single_sqrt(RATE_SQUARED_MOST),
-                                takt_verifier_programmed(&need, r, w->element[i + 1]));
-
-        for (unsigned k = 0; k < r->slots.count; k++) {
-            if (feed * need.first[k] > r->slots.velocity_mm_s[k]) {
-                feed = r->slots.velocity_mm_s[k] / need.first[k];
-            }
-        }
-        for (unsigned k = 0; k < 3; k++) {
-            p->most[i + k] = single_min(p->most[i + k], feed * feed);
-        }
-    }
-    for (unsigned i = 0; i < p->pieces + 2; i++) {
-        p->most[i] = single_max(p->most[i], 2.0f * RATE_SQUARED_MIN);
-    }
-}
-
-static void set_scale(struct tempo *p, const struct window *w, const struct route *r)
-{
-    const float d = (float)w->interval_s;
-
-    p->change = r->slots.change_per_s * d;
-    p->rounded = r->slots.rounded_per_s2 * d * d;
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        const float unit = (float)w->unit_mm[i];
-        const float bend = r->slots.acceleration_mm_s2[i] * d * d;
-        const float twist = TWIST_PART * r->slots.jerk_mm_s3[i] * d * d * d;
-
-        p->bend_per_unit[i] = unit / bend;
-        p->twist_per_unit[i] = unit / single_min(twist, TWIST_BEND * bend);
-        p->twist_all[i] = twist / single_min(twist, TWIST_BEND * bend);
-    }
-}
-
-/* The curve's differences where pieces begin, and where the last one ends. */
-static void set_differences(struct tempo *p, const struct window *w, const struct route *r)
-{
-    p->capacity = w->capacity;
-    for (unsigned slot = 0; slot < r->slots.count; slot++) {
-        for (unsigned i = 0; i + 2 < w->count; i++) {
-            const int32_t x = window_x(w, slot, i + 1);
-            const float before = (float)(x - window_x(w, slot, i));
-            const float after = (float)(window_x(w, slot, i + 2) - x);
-
-            p->first[slot * w->capacity + i] = 0.5f * (before + after);
-            p->second[slot * w->capacity + i] = after - before;
-        }
-    }
-}
-
 static void set_even(struct tempo *p, const struct window *w)
 {
     TAKT_ASSERT(w->count > SMOOTH_FIXED && w->count <= SMOOTH_SAMPLES_MAX);
@@ -478,9 +410,7 @@ void takt_tempo_find(struct tempo *p, const struct window *w, const struct route
 
     memset(p, 0, sizeof(*p));
     set_even(p, w);
-    set_scale(p, w, r);
-    set_differences(p, w, r);
-    set_most(p, w, r);
+    takt_tempo_begin(p, w, r);
     const struct span free = {.first = 2, .end = w->at_end ? p->pieces + 2 : p->pieces};
 
     for (unsigned n = 0; n < ITERATIONS && free.first < free.end; n++) {

@@ -1,0 +1,11 @@
+/* Inside relaxing: corners of the route. */
+#ifndef TAKT_SMOOTH_RELAX_CORNERS_H
+#define TAKT_SMOOTH_RELAX_CORNERS_H
+
+#include "smooth/relax.h"
+
+/* Those that a condition of their own is worth, in their order, as many as there is room for. */
+void takt_relax_find_corners(struct relax_corners *c, const struct window *w,
+                             const struct route *r);
+
+#endif

@@ -1,0 +1,212 @@
+/*
+ * What a piece needs of velocity, acceleration and jerk, and what that leaves: the highest rate that it may be gone along at, and
+ * how fast that may change on it.
+ */
+#include "smooth/verifier.h"
+
+#include "base/assert.h"
+#include "base/maths.h"
+#include "smooth/single.h"
+
+#include <stddef.h>
+
+/* Rounding of limits. */
+#define LIMIT 0.999f
+
+/* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
+#define LEFT_LEAST 0.06
+#define LEFT_MOST  0.5
+
+/* Part of the pieces before the trapezoidal reference that are known on the average: README.md. */
+#define KNOWN_PART 0.7
+
+/* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
+#define ROUNDING_PART 0.3
+#define TURNING_PART  0.4f
+
+/* Where the axes nearly stand, nothing else bounds the rate. */
+#define RATE_MAX 4.0f
+
+/* Changes of rate are not rounded over more cycles than these. */
+#define ROUNDING_CYCLES_MAX 64.0
+
+/* A rate does not change faster than this times what it may change by on every piece. */
+#define CHANGE_MOST 64.0f
+
+/*
+ * Need of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8
+ * at most. square: of the first derivative, over the linear axes and over the others.
+ */
+static void need_of_group(const struct window *w, const struct route *r, unsigned group,
+                          unsigned piece, struct verifier_need *need, float square[2])
+{
+    const lanes_int *c = w->x + (size_t)group * w->capacity + piece;
+    const lanes_int step0 = c[1] - c[0];
+    const lanes_int step1 = c[2] - c[1];
+    const lanes_int step2 = c[3] - c[2];
+    const lanes twist = lanes_size(lanes_of(step2 - 2 * step1 + step0));
+    const lanes way =
+        lanes_max(lanes_size(lanes_of(step0 + step1)), lanes_size(lanes_of(step1 + step2)));
+    const lanes bend =
+        lanes_max(lanes_size(lanes_of(step1 - step0)), lanes_size(lanes_of(step2 - step1)));
+    const lanes most = 0.5f * way + twist / 8.0f;
+    const float per_s = 1.0f / (float)w->interval_s;
+
+    for (unsigned k = 0, i = group * SMOOTH_LANES; k < SMOOTH_LANES && i < r->slots.count;
+         k++, i++) {
+        const float first = (float)w->unit_mm[i] * per_s;
+
+        need->first[i] = most[k] * first;
+        need->second[i] = bend[k] * first * per_s;
+        need->third[i] = twist[k] * first * per_s * per_s;
+        square[r->slots.axis[i] < AXIS_LINEAR_COUNT ? 0 : 1] += need->first[i] * need->first[i];
+    }
+}
+
+void takt_verifier_need(const struct window *w, const struct route *r, unsigned piece,
+                        struct verifier_need *need)
+{
+    float square[2] = {0.0f, 0.0f};
+
+    TAKT_ASSERT(piece + 3 < w->count);
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        need_of_group(w, r, g, piece, need, square);
+    }
+    need->linear_mm_s = single_sqrt(square[0]);
+    need->rotary_mm_s = single_sqrt(square[1]);
+}
+
+float takt_verifier_programmed(const struct verifier_need *need, const struct route *r,
+                               uint32_t element)
+{
+    const float feed = route_element(r, element)->rotary ? need->rotary_mm_s : need->linear_mm_s;
+
+    return feed > 0.0f ? route_programmed(r, element) / feed : SINGLE_INFINITY;
+}
+
+/* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
+static double reached(const struct smooth_limits *limits, int axis)
+{
+    TAKT_ASSERT(limits->velocity_mm_s[axis] > 0.0 && limits->jerk_mm_s3[axis] > 0.0);
+    return maths_min(limits->acceleration_mm_s2[axis],
+                     maths_sqrt(limits->velocity_mm_s[axis] * limits->jerk_mm_s3[axis]));
+}
+
+/*
+ * The trapezoidal reference comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
+ * slow before the end of what is known, over and over.
+ */
+static double change_of_axis_at_rest(const struct smooth_limits *limits, double interval_s,
+                                     int axis)
+{
+    const double most = reached(limits, axis) / limits->velocity_mm_s[axis];
+    const double needed = 1.0 / (2.0 * KNOWN_PART * SMOOTH_AHEAD_PIECES * interval_s);
+
+    return maths_clamp(needed, LEFT_LEAST * most, LEFT_MOST * most);
+}
+
+/*
+ * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
+ * slower that no axis needs more than its part of the jerk for it: V r'/R <= part J.
+ */
+void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
+                          struct verifier_change *change)
+{
+    double rounding_s = limits->cycle_s;
+    double most = MATHS_INFINITY;
+
+    TAKT_ASSERT(interval_s > 0.0);
+    change->by = MATHS_INFINITY;
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            const double ramp_s = reached(limits, i) / limits->jerk_mm_s3[i];
+
+            change->by = maths_min(change->by, change_of_axis_at_rest(limits, interval_s, i));
+            rounding_s = maths_max(rounding_s, ramp_s);
+            most =
+                maths_min(most, ROUNDING_PART * limits->jerk_mm_s3[i] / limits->velocity_mm_s[i]);
+        }
+    }
+    change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
+    if (change->rounding_s < rounding_s) {
+        change->by = maths_min(change->by, most * change->rounding_s);
+    }
+    change->rounded = change->by / change->rounding_s;
+    TAKT_ASSERT(change->by > 0.0 && change->rounding_s > 0.0);
+}
+
+/*
+ * The highest rate r of one axis that may still change by r' and r'':
+ *     velocity      x' r                             <= V
+ *     acceleration  x' r' + x'' r^2                  <= A
+ *     jerk          x' r'' + 3 x'' r r' + x''' r^3   <= J
+ * Each of the jerk's terms has a part for itself: a curve that needed all of it for one could not be gone along.
+ */
+static float most_of_axis(const struct verifier_need *need, const struct route_slots *slots,
+                          const struct verifier_change *change, unsigned i, float most)
+{
+    const float first = need->first[i];
+    const float second = need->second[i];
+    const float third = need->third[i];
+    const float by = (float)change->by;
+
+    if (first * most > slots->velocity_mm_s[i]) {
+        most = slots->velocity_mm_s[i] / first;
+    }
+    const float a = single_max(0.0f, LIMIT * slots->acceleration_mm_s2[i] - first * by);
+
+    if (second * most * most > a) {
+        most = single_sqrt(a / second);
+    }
+    const float turning = TURNING_PART * slots->jerk_mm_s3[i];
+
+    if (3.0f * second * most * by > turning) {
+        most = turning / (3.0f * second * by);
+    }
+    const float j = single_max(0.0f, LIMIT * slots->jerk_mm_s3[i] - first * (float)change->rounded -
+                                         3.0f * second * most * by);
+
+    return third * most * most * most > j ? takt_single_cbrt(j / third) : most;
+}
+
+void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,
+                        const struct verifier_change *change, struct verifier_rate *rate)
+{
+    rate->most = RATE_MAX;
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
+    }
+    TAKT_ASSERT(rate->most >= 0.0f && rate->most <= RATE_MAX);
+    rate->programmed = takt_verifier_programmed(need, r, element);
+}
+
+/* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
+static float change_of_axis(const struct verifier_need *need, const struct route_slots *slots,
+                            float rounding_s, unsigned i, float rate, float by)
+{
+    const float first = need->first[i];
+    const float second = need->second[i];
+    const float a = LIMIT * slots->acceleration_mm_s2[i] - second * rate * rate;
+    const float j = LIMIT * slots->jerk_mm_s3[i] - need->third[i] * rate * rate * rate;
+    const float per_by = first / rounding_s + 3.0f * second * rate;
+
+    by = first * by > a ? a / first : by;
+    return per_by * by > j ? j / per_by : by;
+}
+
+float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
+                              const struct verifier_change *change, float rate)
+{
+    const float rounding_s = (float)change->rounding_s;
+    float by = (float)change->by;
+    float most = CHANGE_MOST * by;
+
+    TAKT_ASSERT(rate >= 0.0f);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
+    }
+    while (2.0f * by <= most) {
+        by *= 2.0f;
+    }
+    return by;
+}
