@@ -59,6 +59,7 @@ static void finish_motion(struct cutter_compensation *o, const struct compensati
     double lead_mm[2];
     double end[AXIS_COUNT];
 
+    TAKT_ASSERT(i->kind >= COMPENSATION_STANDING);
     m->kind = (enum move_kind)i->move;
     m->path = (enum move_path)i->path;
     m->line = i->line;

@@ -174,6 +174,7 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
 /* The trapezoidal reference has not taken the last ceiling: that is free, and another one is needed. */
 static void note_refused(struct motion *m)
 {
+    TAKT_ASSERT(m->active < 2);
     if (m->reference.here.ceiling == path_ceiling(m->path, 1 - m->active)) {
         m->active = 1 - m->active;
         m->made_holds = false;

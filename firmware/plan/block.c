@@ -199,7 +199,7 @@ static void limit_curved_plane(struct block_shape *shape, enum axis first, enum 
 }
 
 /*
- * A piece that begins or ends on an involute's base circle is gone from or to rest: what bends there is bounded by what
+ * A piece that begins or ends on an involute's base circle is gone from or to rest: its curvature there is bounded by what
  * the ramp does (geometry/involute.h), so the plane's axes count like one that moves straight, with lower limits.
  */
 static void limit_cusp_plane(struct block_shape *shape, enum axis first, enum axis second,

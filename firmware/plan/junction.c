@@ -15,7 +15,7 @@
  *
  * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v cycle / 4 <= d over the
  * axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside what the axes can do. Where the motions have a
- * tolerance P, what bends beside the corner take counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
+ * tolerance P, what curves beside the corner take counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
  *
  * Short blocks. Junctions less than three cycles apart add up. With f = min(1, d / (6 cycles)), d the time of the shorter
  * block beside a junction at its ceiling, a junction may use f of the jerk budget. If several fall into three cycles, each block
@@ -88,14 +88,14 @@ static void junction_measure(const struct block *before, const struct block *aft
     measure_at(before, before->curve.length_mm, &t0, &k0);
     measure_at(after, 0.0, &t1, &k1);
     static const struct point straight;
-    const double bend =
+    const double curvature =
         maths_max(apart(&k0, &straight, AXIS_COUNT), apart(&k1, &straight, AXIS_COUNT));
     const double tolerance_mm = maths_min(tolerance_of(before), tolerance_of(after));
 
     *steps = (struct junction_steps){
         .within_mm_s = maths_min(
             feed_within(apart(&t0, &t1, AXIS_LINEAR_COUNT), 0.0, limits->chord_error_max_mm, cycle),
-            feed_within(apart(&t0, &t1, AXIS_COUNT), bend, tolerance_mm, cycle))};
+            feed_within(apart(&t0, &t1, AXIS_COUNT), curvature, tolerance_mm, cycle))};
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
             const double d = maths_abs(t1.at[i] - t0.at[i]);
@@ -103,7 +103,7 @@ static void junction_measure(const struct block *before, const struct block *aft
             const double j = limits->jerk_mm_s3[i] * cycle;
 
             steps->p_s_mm = maths_max(steps->p_s_mm, d / (j * cycle));
-            steps->q_s2_mm2 = maths_max(steps->q_s2_mm2, JUNCTION_BEND * k / j);
+            steps->q_s2_mm2 = maths_max(steps->q_s2_mm2, JUNCTION_CURVATURE * k / j);
             steps->r_s_mm = maths_max(steps->r_s_mm, d / (limits->acceleration_mm_s2[i] * cycle));
         }
     }

@@ -9,19 +9,19 @@
 
 /* Products of the rows (1 4 1)/6, (1 -2 1), (-1 3 -3 1) with themselves, shifted by 0 to 3 samples. */
 static const float near_products[4] = {18.0f / 36.0f, 8.0f / 36.0f, 1.0f / 36.0f, 0.0f};
-static const float bend_products[4] = {6.0f, -4.0f, 1.0f, 0.0f};
-static const float twist_products[4] = {20.0f, -15.0f, 6.0f, -1.0f};
+static const float second_products[4] = {6.0f, -4.0f, 1.0f, 0.0f};
+static const float third_products[4] = {20.0f, -15.0f, 6.0f, -1.0f};
 
 /* Between samples that are not fixed every row is there. */
 static void fill(struct relax *x, const struct window *w, unsigned group, float weight)
 {
     const unsigned first = group * w->capacity;
-    const float bend = x->scale.bend_per_near[group];
-    const float twist = x->scale.twist_per_near[group];
+    const float second = x->scale.second_per_near[group];
+    const float third = x->scale.third_per_near[group];
 
     for (unsigned k = 0; k < 4; k++) {
-        const float value = weight * near_products[k] + bend * bend * bend_products[k] +
-                            twist * twist * twist_products[k];
+        const float value = weight * near_products[k] + second * second * second_products[k] +
+                            third * third * third_products[k];
 
         for (unsigned i = 0; i < w->count; i++) {
             x->band[k][first + i] = value;

@@ -66,7 +66,7 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
     for (unsigned i = 0; i < r->slots.count; i++) {
         const unsigned axis = r->slots.axis[i];
         const float turn = single_abs(d[1][i] - d[0][i]) / r->slots.weight[i];
-        const float bend = single_abs(k[1][i] - k[0][i]) / r->slots.weight[i];
+        const float jump = single_abs(k[1][i] - k[0][i]) / r->slots.weight[i];
         const float j = junction_share * (float)machine->jerk_mm_s3[axis] * cycle;
         const float a = junction_acceleration * (float)machine->acceleration_mm_s2[axis] * cycle;
 
@@ -75,8 +75,8 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
 
             feed = single_min(feed, most > reach ? single_sqrt(most * reach) : most);
         }
-        if (bend > 0.0f) {
-            feed = single_min(feed, single_sqrt(j / ((float)JUNCTION_BEND * bend)));
+        if (jump > 0.0f) {
+            feed = single_min(feed, single_sqrt(j / ((float)JUNCTION_CURVATURE * jump)));
         }
     }
     return feed;
@@ -106,15 +106,15 @@ static bool may_pass(const struct route *r, const struct smooth_limits *machine,
 }
 
 /* What a curved element leaves in any direction, and how much of a circle it is. */
-struct bend {
+struct arc_limits {
     float jerk;
     float acceleration;
     float radius;
 };
 
 /* An axis in its plane may have all of the acceleration for itself, others but their part of it. */
-static float bend_acceleration(const struct route *r, const struct smooth_limits *machine,
-                               uint32_t index, const float k[])
+static float acceleration_along(const struct route *r, const struct smooth_limits *machine,
+                                uint32_t index, const float k[])
 {
     float d[AXIS_COUNT];
     float most = SINGLE_INFINITY;
@@ -130,7 +130,7 @@ static float bend_acceleration(const struct route *r, const struct smooth_limits
 }
 
 /* a^2 + (v^2 / R)^2 <= A^2, 3 v a / R <= RAMP_NORMAL J and j + v^3 / R^2 <= RAMP_ALONG J. */
-static void bound_ramps(const struct bend *b, struct course *c)
+static void bound_ramps(const struct arc_limits *b, struct course *c)
 {
     const float normal = c->feed * c->feed / b->radius;
     const float square = b->acceleration * b->acceleration - normal * normal;
@@ -150,7 +150,7 @@ static float rest_time(const struct course *c, float windows)
 }
 
 /* How long a hold takes at a feed, at worst: plan keeps what the highest override needs. */
-static float hold_time(const struct bend *b, float feed, float windows)
+static float hold_time(const struct arc_limits *b, float feed, float windows)
 {
     struct course c = {.feed = override_max * feed};
 
@@ -187,9 +187,9 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
     float k[AXIS_COUNT];
     const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
     const float curvature = takt_route_curvature(r, index, e->start_mm, k); /* k is used below */
-    const struct bend b = {.jerk = (joined ? 1.0f - junction_share : 1.0f) * e->along.jerk,
-                           .radius = 1.0f / curvature,
-                           .acceleration = bend_acceleration(r, machine, index, k)};
+    const struct arc_limits b = {.jerk = (joined ? 1.0f - junction_share : 1.0f) * e->along.jerk,
+                                 .radius = 1.0f / curvature,
+                                 .acceleration = acceleration_along(r, machine, index, k)};
     const float most = hold_time_on_line(r, machine);
 
     c->feed = single_min(c->feed, takt_single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));

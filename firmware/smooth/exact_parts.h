@@ -32,6 +32,6 @@
 #define JUNCTION_WORTH 0.75
 
 /* What is left of the third difference of a step of acceleration at a junction: the peak of the quadratic B-spline. */
-#define JUNCTION_BEND 0.75
+#define JUNCTION_CURVATURE 0.75
 
 #endif

@@ -32,7 +32,7 @@ static void set_interval(struct smooth *s)
     find_change(s, interval_s, &s->change);
     s->route.slots.change_per_s = (float)s->change.by;
     s->route.slots.rounded_per_s2 = (float)s->change.rounded;
-    s->route.chord_per_bend =
+    s->route.chord_per_second =
         (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
     takt_window_init(&s->window, &s->route, interval_s);
 }
@@ -109,6 +109,7 @@ bool takt_fill(struct smooth *s)
 {
     struct window *w = &s->window;
 
+    TAKT_ASSERT(w->count <= SMOOTH_SAMPLES_MAX);
     if (s->route.count == 0 || is_tried_in_vain(s)) {
         return false;
     }

@@ -35,10 +35,10 @@
 #define SCALE_MAX 300.0f
 
 /* Rows of second differences count this many times more than the others: along straights they alone find the ramps. */
-#define BEND_COUNTS 2.0f
+#define SECOND_COUNTS 2.0f
 
 /* What the axis of the least acceleration needs counts for all, up to this many times what that of the most needs. */
-#define BEND_SPAN 4.0f
+#define SECOND_SPAN 4.0f
 
 /* What a curved route may leave its tangent by for that to stand for it, as a part of the tolerance. */
 #define CURVED 0.05f
@@ -72,23 +72,23 @@ static void widen(struct relax_span *span, float per_near)
 static void set_rows(struct relax_scale *s, const struct route *r, unsigned group,
                      float tolerance_mm, float d)
 {
-    struct relax_span bend = {SCALE_MAX, 0.0f};
-    struct relax_span twist = {SCALE_MAX, 0.0f};
+    struct relax_span second = {SCALE_MAX, 0.0f};
+    struct relax_span third = {SCALE_MAX, 0.0f};
     const unsigned first = group * SMOOTH_LANES;
 
     for (unsigned i = first; i < first + SMOOTH_LANES && i < r->slots.count; i++) {
         const float per_near = tolerance_mm / r->slots.weight[i];
 
-        s->bend_most[group][i - first] = r->slots.acceleration_mm_s2[i] * d * d / per_near;
-        s->twist_most[group][i - first] = r->slots.jerk_mm_s3[i] * d * d * d / per_near;
-        widen(&bend, 1.0f / s->bend_most[group][i - first]);
-        widen(&twist, 1.0f / s->twist_most[group][i - first]);
+        s->second_most[group][i - first] = r->slots.acceleration_mm_s2[i] * d * d / per_near;
+        s->third_most[group][i - first] = r->slots.jerk_mm_s3[i] * d * d * d / per_near;
+        widen(&second, 1.0f / s->second_most[group][i - first]);
+        widen(&third, 1.0f / s->third_most[group][i - first]);
     }
-    s->bend_per_near[group] =
-        single_min(BEND_COUNTS * single_min(bend.most, BEND_SPAN * bend.least), SCALE_MAX);
-    s->twist_per_near[group] = single_min(single_sqrt(twist.most * twist.least), SCALE_MAX);
-    s->bend_most[group] *= s->bend_per_near[group];
-    s->twist_most[group] *= s->twist_per_near[group];
+    s->second_per_near[group] =
+        single_min(SECOND_COUNTS * single_min(second.most, SECOND_SPAN * second.least), SCALE_MAX);
+    s->third_per_near[group] = single_min(single_sqrt(third.most * third.least), SCALE_MAX);
+    s->second_most[group] *= s->second_per_near[group];
+    s->third_most[group] *= s->third_per_near[group];
 }
 
 static void set_scale(struct relax_scale *s, const struct window *w, const struct route *r,
@@ -202,20 +202,20 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
     const lanes_int *restrict c = w->x + first;
     lanes *restrict step = x->step + first;
     lanes *restrict near = x->near + first;
-    lanes *restrict bend = x->bend + first;
-    lanes *restrict twist = x->twist + first;
-    const float bend_per_near = x->scale.bend_per_near[group];
-    const float twist_per_near = x->scale.twist_per_near[group];
-    const lanes bend_per_unit = bend_per_near * x->scale.near_per_unit[group];
-    const lanes twist_per_unit = twist_per_near * x->scale.near_per_unit[group];
-    const lanes bend_all = x->scale.bend_most[group];
-    const lanes twist_all = x->scale.twist_most[group];
-    const lanes bend_change = 0.5f * x->scale.change * bend_per_unit;
-    const lanes twist_first = 0.5f * x->scale.rounded * twist_per_unit;
-    const lanes twist_bend = 3.0f * x->scale.change * twist_per_unit;
+    lanes *restrict second = x->second + first;
+    lanes *restrict third = x->third + first;
+    const float second_per_near = x->scale.second_per_near[group];
+    const float third_per_near = x->scale.third_per_near[group];
+    const lanes second_per_unit = second_per_near * x->scale.near_per_unit[group];
+    const lanes third_per_unit = third_per_near * x->scale.near_per_unit[group];
+    const lanes second_all = x->scale.second_most[group];
+    const lanes third_all = x->scale.third_most[group];
+    const lanes second_change = 0.5f * x->scale.change * second_per_unit;
+    const lanes third_first = 0.5f * x->scale.rounded * third_per_unit;
+    const lanes third_second = 3.0f * x->scale.change * third_per_unit;
     lanes_int b0 = c[0] - 2 * c[1] + c[2];
     lanes before = {
-        0.0f}; /* twist, bow and near of the sample before, bow of the one before that */
+        0.0f}; /* third difference, bow and near of the sample before, bow of the one before that */
     lanes bow1 = before;
     lanes bow2 = before;
     lanes near1 = before;
@@ -224,14 +224,14 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
         const lanes_int b1 = c[i] - 2 * c[i + 1] + c[i + 2];
         const lanes way = lanes_size(lanes_of(c[i + 1] - c[i - 1]));
         const lanes bow0 = lanes_of(b0);
-        const lanes bend_most = left_of(bend_all, bend_change * way);
-        const lanes twist_most =
-            left_of(twist_all, twist_first * way + twist_bend * lanes_size(bow0));
-        const lanes b = into_box(&now, bow0 * bend_per_unit, bend_most, &bend[i]);
-        const lanes t = into_box(&now, lanes_of(b1 - b0) * twist_per_unit, twist_most, &twist[i]);
+        const lanes second_most = left_of(second_all, second_change * way);
+        const lanes third_most =
+            left_of(third_all, third_first * way + third_second * lanes_size(bow0));
+        const lanes b = into_box(&now, bow0 * second_per_unit, second_most, &second[i]);
+        const lanes t = into_box(&now, lanes_of(b1 - b0) * third_per_unit, third_most, &third[i]);
         const lanes e = near_of(&near[i], step[i], now.weight);
-        const lanes after = twist_per_near * t;
-        const lanes bow = before + bend_per_near * b - after + e * (1.0f / 6.0f);
+        const lanes after = third_per_near * t;
+        const lanes bow = before + second_per_near * b - after + e * (1.0f / 6.0f);
 
         step[i - 1] = near1 + bow2 - 2.0f * bow1 + bow;
         before = after;
@@ -285,8 +285,9 @@ static void measure_near(struct relax *x, const struct window *w, const struct r
     const lanes per_unit = x->scale.near_per_unit[group];
 
     for (unsigned i = 1; i + 2 < w->count; i++) {
-        const lanes_int bend = c[i - 1] - 2 * c[i] + c[i + 1];
-        const lanes now = (lanes_of(c[i] - closest[i]) + lanes_of(bend) * (1.0f / 6.0f)) * per_unit;
+        const lanes_int second = c[i - 1] - 2 * c[i] + c[i + 1];
+        const lanes now =
+            (lanes_of(c[i] - closest[i]) + lanes_of(second) * (1.0f / 6.0f)) * per_unit;
 
         step[i] = now;
         near[i] += alpha * now;
@@ -454,8 +455,8 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     set_scale(&x->scale, w, r, tolerance_mm);
     takt_relax_find_corners(&x->corners, w, r);
     memset(x->near, 0, sizeof x->near);
-    memset(x->bend, 0, sizeof x->bend);
-    memset(x->twist, 0, sizeof x->twist);
+    memset(x->second, 0, sizeof x->second);
+    memset(x->third, 0, sizeof x->third);
     memset(x->closest, 0, sizeof x->closest);
     memset(x->along, 0, sizeof x->along);
     memset(x->band, 0, sizeof x->band);

@@ -34,10 +34,10 @@ struct relax_corners {
 struct relax_scale {
     lanes near_per_unit[SMOOTH_GROUPS_MAX];
     lanes unit_per_near[SMOOTH_GROUPS_MAX];
-    float bend_per_near[SMOOTH_GROUPS_MAX]; /* the same in all lanes, which so have one matrix */
-    float twist_per_near[SMOOTH_GROUPS_MAX];
-    lanes bend_most[SMOOTH_GROUPS_MAX]; /* the boxes, in those */
-    lanes twist_most[SMOOTH_GROUPS_MAX];
+    float second_per_near[SMOOTH_GROUPS_MAX]; /* the same in all lanes, which so have one matrix */
+    float third_per_near[SMOOTH_GROUPS_MAX];
+    lanes second_most[SMOOTH_GROUPS_MAX]; /* the boxes, in those */
+    lanes third_most[SMOOTH_GROUPS_MAX];
     float change; /* of the rate, in an interval (verifier.h) */
     float rounded;
 };
@@ -47,8 +47,8 @@ struct relax {
     struct relax_scale scale;
     float band[4][SMOOTH_SAMPLES_MAX]; /* the matrix, by groups */
     relax_rows near;                   /* the curve at the samples: in the tube */
-    relax_rows bend;                   /* second differences: in the box of acceleration */
-    relax_rows twist;                  /* third differences: in the box of jerk */
+    relax_rows second;                 /* second differences: in the box of acceleration */
+    relax_rows third;                  /* third differences: in the box of jerk */
     relax_rows step;
     relax_rows along;                      /* direction of the route at the closest points */
     lanes_int closest[SMOOTH_SAMPLES_MAX]; /* beside each sample on the route */

@@ -77,6 +77,7 @@ void takt_relax_find_corners(struct relax_corners *c, const struct window *w, co
 {
     unsigned sample = 1;
 
+    TAKT_ASSERT(r->slots.groups > 0);
     memset(c, 0, sizeof(*c));
     c->capacity = RELAX_CORNERS_MAX / r->slots.groups;
     for (uint32_t e = w->element[1] + 1; e < r->count && c->count < c->capacity; e++) {

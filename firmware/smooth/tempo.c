@@ -75,24 +75,24 @@ static struct end end_of(const float *rate_squared)
 
 /* What an axis does at an end of pieces: its differences, and what it needs there. */
 struct motion_at {
-    lanes first, half, second, bend, jerk, jerk_most;
+    lanes first, half, second, acceleration, jerk, jerk_most;
 };
 
 /* J - x' r r'' - 3 r' |x' b'/2 + x'' b| */
 static inline struct motion_at motion_at(const struct tempo *p, unsigned slot, unsigned piece,
                                          const struct end *e)
 {
-    const float per_unit = p->twist_per_unit[slot];
+    const float per_unit = p->third_per_unit[slot];
     const size_t at = (size_t)slot * p->capacity + piece;
     struct motion_at m = {.first = lanes_at(p->first + at), .second = lanes_at(p->second + at)};
 
     m.half = 0.5f * m.first;
-    m.bend = e->slope * m.half + e->rate_squared * m.second;
+    m.acceleration = e->slope * m.half + e->rate_squared * m.second;
     m.jerk = e->rate * per_unit;
     const lanes needed =
-        p->rounded * lanes_size(e->rate * m.first) + 3.0f * p->change * lanes_size(m.bend);
+        p->rounded * lanes_size(e->rate * m.first) + 3.0f * p->change * lanes_size(m.acceleration);
 
-    m.jerk_most = left_by(per_unit * needed, lanes_all(p->twist_all[slot]));
+    m.jerk_most = left_by(per_unit * needed, lanes_all(p->third_all[slot]));
     return m;
 }
 
@@ -103,9 +103,9 @@ static inline void rows_of(const struct tempo *p, unsigned slot, unsigned piece,
     const struct motion_at m1 = motion_at(p, slot, piece + 1, &end[1]);
     const lanes third = m1.second - m0.second;
     const lanes bow = 0.5f * (end[1].slope - end[0].slope);
-    const float a = p->bend_per_unit[slot];
+    const float a = p->second_per_unit[slot];
 
-    row[0].value = a * m0.bend;
+    row[0].value = a * m0.acceleration;
     row[0].most = left_by(p->change * end[0].rate * a * lanes_size(m0.first), lanes_all(1.0f));
     row[0].by[0] = a * (0.5f * m0.second - m0.half);
     row[0].by[1] = a * (0.5f * m0.second + m0.half);

@@ -36,9 +36,9 @@ struct tempo {
     float band[3][TEMPO_MAX]; /* its matrix: the diagonal, and what is beside it */
     float change;             /* of the rate, in an interval (verifier.h) */
     float rounded;
-    float bend_per_unit[SMOOTH_SLOTS_MAX]; /* differences in A and J */
-    float twist_per_unit[SMOOTH_SLOTS_MAX];
-    float twist_all[SMOOTH_SLOTS_MAX]; /* J, where the curve's part of it is less */
+    float second_per_unit[SMOOTH_SLOTS_MAX]; /* differences in A and J */
+    float third_per_unit[SMOOTH_SLOTS_MAX];
+    float third_all[SMOOTH_SLOTS_MAX]; /* J, where the curve's part of it is less */
     float first[TEMPO_PLACES_MAX]; /* differences where pieces begin, one slot after the other */
     float second[TEMPO_PLACES_MAX];
     float sum[TEMPO_SUMS][TEMPO_MAX]; /* of a piece's rows; the first piece is the third */

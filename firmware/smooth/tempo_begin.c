@@ -1,12 +1,13 @@
 /* What the search for the best tempo begins with: the window's differences, and what limits b. */
 #include "smooth/tempo_begin.h"
 
+#include "base/assert.h"
 #include "smooth/single.h"
 #include "smooth/verifier.h"
 
 /* New samples are put on the curve from outside: that takes some of the jerk, and as much acceleration of an interval. */
-#define TWIST_PART 0.95f
-#define TWIST_BEND 0.5f
+#define THIRD_PART      0.95f
+#define THIRD_OF_SECOND 0.5f
 
 /* b <= (V/x')^2 and (F/|x'|)^2 of every piece that the coefficient belongs to. */
 static void set_most(struct tempo *p, const struct window *w, const struct route *r)
@@ -43,12 +44,12 @@ static void set_scale(struct tempo *p, const struct window *w, const struct rout
     p->rounded = r->slots.rounded_per_s2 * d * d;
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float unit = (float)w->unit_mm[i];
-        const float bend = r->slots.acceleration_mm_s2[i] * d * d;
-        const float twist = TWIST_PART * r->slots.jerk_mm_s3[i] * d * d * d;
+        const float second = r->slots.acceleration_mm_s2[i] * d * d;
+        const float third = THIRD_PART * r->slots.jerk_mm_s3[i] * d * d * d;
 
-        p->bend_per_unit[i] = unit / bend;
-        p->twist_per_unit[i] = unit / single_min(twist, TWIST_BEND * bend);
-        p->twist_all[i] = twist / single_min(twist, TWIST_BEND * bend);
+        p->second_per_unit[i] = unit / second;
+        p->third_per_unit[i] = unit / single_min(third, THIRD_OF_SECOND * second);
+        p->third_all[i] = third / single_min(third, THIRD_OF_SECOND * second);
     }
 }
 
@@ -70,6 +71,7 @@ static void set_differences(struct tempo *p, const struct window *w, const struc
 
 void takt_tempo_begin(struct tempo *p, const struct window *w, const struct route *r)
 {
+    TAKT_ASSERT(p->pieces + 2 <= TEMPO_MAX);
     set_scale(p, w, r);
     set_differences(p, w, r);
     set_most(p, w, r);

@@ -68,26 +68,26 @@ static float turn_square(const struct route *r, const struct steps *s)
 }
 
 /* Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the second derivative. */
-static float bend_square(const struct window *w, const struct route *r, unsigned sample)
+static float second_square(const struct window *w, const struct route *r, unsigned sample)
 {
-    lanes bend[SMOOTH_GROUPS_MAX];
+    lanes second[SMOOTH_GROUPS_MAX];
 
     for (unsigned g = 0; g < r->slots.groups; g++) {
         const lanes_int *c = w->x + (size_t)g * w->capacity + sample;
 
-        bend[g] = weighted(w, g, c[-1] - 2 * c[0] + c[1]);
+        second[g] = weighted(w, g, c[-1] - 2 * c[0] + c[1]);
     }
-    return dot_of(r, bend, bend);
+    return dot_of(r, second, second);
 }
 
 /* The most of that on a piece and its neighbours, which a line between two setpoints may reach into. */
-static float bend_around(const struct window *w, const struct route *r, unsigned piece)
+static float second_around(const struct window *w, const struct route *r, unsigned piece)
 {
     const unsigned end = piece + 5 < w->count ? piece + 4 : w->count - 1;
     float most = 0.0f;
 
     for (unsigned i = piece > 0 ? piece : 1; i < end; i++) {
-        most = single_max(most, bend_square(w, r, i));
+        most = single_max(most, second_square(w, r, i));
     }
     return single_sqrt(most);
 }
@@ -96,7 +96,7 @@ static float bend_around(const struct window *w, const struct route *r, unsigned
  * The most across a piece; it is largest at one of the ends. What lies along the piece takes no place off the line; what lies along the way from its first control point to its last does
  * so where the piece turns from that.
  */
-static float bend_across(const struct window *w, const struct route *r, unsigned piece)
+static float second_across(const struct window *w, const struct route *r, unsigned piece)
 {
     struct steps s;
     float most = 0.0f;
@@ -106,14 +106,14 @@ static float bend_across(const struct window *w, const struct route *r, unsigned
     const float turn = single_sqrt(turn_square(r, &s));
 
     for (unsigned k = 0; k < 2; k++) {
-        lanes bend[SMOOTH_GROUPS_MAX];
+        lanes second[SMOOTH_GROUPS_MAX];
 
         for (unsigned g = 0; g < r->slots.groups; g++) {
-            bend[g] = s.step[k + 1][g] - s.step[k][g];
+            second[g] = s.step[k + 1][g] - s.step[k][g];
         }
-        const float square = dot_of(r, bend, bend);
+        const float square = dot_of(r, second, second);
         const float along =
-            way > 0.0f ? single_abs(dot_of(r, bend, s.way)) / single_sqrt(way) : 0.0f;
+            way > 0.0f ? single_abs(dot_of(r, second, s.way)) / single_sqrt(way) : 0.0f;
         const float across = single_sqrt(single_max(0.0f, square - along * along));
 
         most = single_max(most, across + turn * along);
@@ -135,19 +135,19 @@ struct look {
  */
 static struct look look_of(const struct window *w, const struct route *r, unsigned piece)
 {
-    const float bend = bend_across(w, r, piece);
+    const float second = second_across(w, r, piece);
     const float tolerance_mm = (float)r->tolerance_mm;
     const float spare_mm = (1.0f - JUDGED) * tolerance_mm;
     struct look look = {.places = 1};
 
     while (look.places < PLACES_MAX &&
-           bend > 8.0f * spare_mm * (float)(look.places * look.places)) {
+           second > 8.0f * spare_mm * (float)(look.places * look.places)) {
         look.places++;
     }
-    const float off = bend / (8.0f * (float)(look.places * look.places));
+    const float off = second / (8.0f * (float)(look.places * look.places));
 
     look.within_mm = single_min(JUDGED * tolerance_mm, tolerance_mm - off);
-    look.corner_mm = look.within_mm - bend_around(w, r, piece) * r->chord_per_bend;
+    look.corner_mm = look.within_mm - second_around(w, r, piece) * r->chord_per_second;
     return look;
 }
 

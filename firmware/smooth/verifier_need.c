@@ -20,7 +20,7 @@
 /* Part of the pieces before the trapezoidal reference that are known on the average: README.md. */
 #define KNOWN_PART 0.7
 
-/* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
+/* Parts of the jerk that beginning to change the rate may need, and changing it on a curve: the curve needs the rest. */
 #define ROUNDING_PART 0.3
 #define TURNING_PART  0.4f
 
@@ -44,12 +44,12 @@ static void need_of_group(const struct window *w, const struct route *r, unsigne
     const lanes_int step0 = c[1] - c[0];
     const lanes_int step1 = c[2] - c[1];
     const lanes_int step2 = c[3] - c[2];
-    const lanes twist = lanes_size(lanes_of(step2 - 2 * step1 + step0));
+    const lanes third = lanes_size(lanes_of(step2 - 2 * step1 + step0));
     const lanes way =
         lanes_max(lanes_size(lanes_of(step0 + step1)), lanes_size(lanes_of(step1 + step2)));
-    const lanes bend =
+    const lanes second =
         lanes_max(lanes_size(lanes_of(step1 - step0)), lanes_size(lanes_of(step2 - step1)));
-    const lanes most = 0.5f * way + twist / 8.0f;
+    const lanes most = 0.5f * way + third / 8.0f;
     const float per_s = 1.0f / (float)w->interval_s;
 
     for (unsigned k = 0, i = group * SMOOTH_LANES; k < SMOOTH_LANES && i < r->slots.count;
@@ -57,8 +57,8 @@ static void need_of_group(const struct window *w, const struct route *r, unsigne
         const float first = (float)w->unit_mm[i] * per_s;
 
         need->first[i] = most[k] * first;
-        need->second[i] = bend[k] * first * per_s;
-        need->third[i] = twist[k] * first * per_s * per_s;
+        need->second[i] = second[k] * first * per_s;
+        need->third[i] = third[k] * first * per_s * per_s;
         square[r->slots.axis[i] < AXIS_LINEAR_COUNT ? 0 : 1] += need->first[i] * need->first[i];
     }
 }
