@@ -25,16 +25,23 @@ class Debugger:
         self.line = socket.socket(socket.AF_UNIX)
         self.line.connect(path)
         self.line.settimeout(60)
+        self.said = b""
         self.ask("qXfer:features:read:target.xml:0,fff")  # or QEMU sets no single register
 
+    def receive(self):
+        while not (packet := re.search(rb"\$([^#]*)#..", self.said)):
+            self.said += self.line.recv(4096)
+        self.said = self.said[packet.end():]
+        self.line.sendall(b"+")
+        return packet[1]
+
     def ask(self, text):
+        """That the processor has stopped may be told unasked, when the debugger has just come."""
         data = text.encode()
         self.line.sendall(b"$%s#%02x" % (data, sum(data) % 256))
-        said = b""
-        while not re.search(rb"\$[^#]*#..", said):
-            said += self.line.recv(4096)
-        self.line.sendall(b"+")
-        return re.search(rb"\$([^#]*)#", said)[1]
+        while (answer := self.receive()).startswith(b"T") and text != "?":
+            pass
+        return answer
 
     def set_register(self, number, value):
         return self.ask(f"P{number:x}={struct.pack('<I', value).hex()}")
