@@ -5,7 +5,7 @@
 void takt_controller_feed_init(struct controller *c, const struct replay_source *compiled)
 {
     struct product_config config = {.limiter = (enum limiter_form)c->machine.limiter,
-                                    .cycle_s = 1e-6 * (double)c->machine.cycle_us};
+                                    .cycle_s = machine_cycle_s(&c->machine)};
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         config.band_percent[i] = c->machine.axis[i].limiter_band_percent;

@@ -60,10 +60,14 @@ static void take_section(struct intake *s, const uint8_t *bytes, size_t length)
     handoff_set_count(&s->sections_came, s->sections_came + 1U);
 }
 
-/* A block ends at a place. Ends come in order. */
+/* A block ends at a place. Ends come in order, or the record is damaged. */
 static void take_end(struct intake *s, uint64_t place)
 {
-    TAKT_ASSERT(place >= s->last_end && s->ends_came - s->ends_taken < INTAKE_ENDS_MAX);
+    TAKT_ASSERT(s->ends_came - s->ends_taken < INTAKE_ENDS_MAX);
+    if (place < s->last_end) {
+        damaged(s);
+        return;
+    }
     s->end[s->ends_came % INTAKE_ENDS_MAX] = (uint32_t)(place - s->last_end);
     s->last_end = place;
     handoff_set_count(&s->ends_came, s->ends_came + 1U);

@@ -19,8 +19,7 @@
 
 static bool has_passed(const struct service *s, uint32_t since_cycle, double time_s)
 {
-    return 1e-6 * (double)s->controller.machine.cycle_us * (double)(s->cycles - since_cycle) >=
-           time_s;
+    return machine_cycle_s(&s->controller.machine) * (double)(s->cycles - since_cycle) >= time_s;
 }
 
 /* So many blocks are ahead that the end of what is known is far away. */

@@ -83,7 +83,7 @@ static void look_at_work(const struct service *s, const struct block *block, str
 static void look_at_way(const struct service *s, uint32_t *value)
 {
     const struct block *block = takt_controller_get_block(&s->controller);
-    const double per_min = MM_MIN_PER_MM_S / (1e-6 * (double)s->controller.machine.cycle_us);
+    const double per_min = MM_MIN_PER_MM_S / machine_cycle_s(&s->controller.machine);
     struct point work, left = {{0}}, feed;
 
     look_at_work(s, block, &work);

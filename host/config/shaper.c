@@ -21,7 +21,7 @@ static struct shape_config config_of(const struct machine_setup *setup)
                                                      [SHAPER_EI] = takt_shapers_ei};
     struct shape_config config = {.train = trains[setup->shaper],
                                   .keeps_way = setup->shaper == SHAPER_NEUTRAL,
-                                  .cycle_s = 1e-6 * (double)setup->machine.cycle_us};
+                                  .cycle_s = machine_cycle_s(&setup->machine)};
 
     _Static_assert(SHAPE_MODES == VIBRATION_MODES, "the modes of an axis");
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {

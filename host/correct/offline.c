@@ -368,7 +368,7 @@ static void open_program(struct offline *o)
     r->axes = config.axes;
     r->at = r->written = config.start;
     takt_correction_init(&r->correction, &o->config->session->setup.machine.correction, config.axes,
-                         1e-6 * (double)o->config->session->setup.machine.cycle_us,
+                         machine_cycle_s(&o->config->session->setup.machine),
                          o->config->session->correction, &config.start);
 }
 

@@ -57,7 +57,7 @@ static void prepare_verifier(struct run *run)
 
 static void set_until(struct run *run)
 {
-    double cycle_s = 1e-6 * (double)run->session.setup.machine.cycle_us;
+    double cycle_s = machine_cycle_s(&run->session.setup.machine);
     double cycles = run->session.options->until_s / cycle_s;
 
     /* Half a cycle of room: 0.1 s are 100 cycles of 1 ms, whatever the division's last bit says. */

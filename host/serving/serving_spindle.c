@@ -68,7 +68,7 @@ bool serving_spindle_open(struct serving_spindle *s, const struct machine_setup 
     const struct virtual_spindle_config config = machine_setup_get_spindle(setup);
 
     memset(s, 0, sizeof *s);
-    s->cycle_s = 1e-6 * (double)setup->machine.cycle_us;
+    s->cycle_s = machine_cycle_s(&setup->machine);
     virtual_spindle_init(&s->inside, &config);
     return where == NULL || open_outside(s, setup, where, unit);
 }

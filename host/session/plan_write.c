@@ -273,7 +273,7 @@ enum command_status plan_write(const struct session *session, const struct sessi
     struct plan_print print = {
         .table = table,
         .json = json,
-        .cycle_s = 1e-6 * (double)session->setup.machine.cycle_us,
+        .cycle_s = machine_cycle_s(&session->setup.machine),
         .moves = found->curves,
     };
     struct planner_totals totals;

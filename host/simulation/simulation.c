@@ -231,7 +231,7 @@ static void measured_cycle(struct simulation *s)
 /* What the machine meets where it is now. */
 static void set_inputs(struct simulation *s)
 {
-    const double cycle_s = 1e-6 * (double)s->controller.machine.cycle_us;
+    const double cycle_s = machine_cycle_s(&s->controller.machine);
     const double time_s = cycle_s * (double)(s->cycles - s->begun);
     struct point at;
 
@@ -283,7 +283,7 @@ static double cut_depth_mm(const struct simulation *s)
 /* The spindle turns on by a cycle, and reports. */
 static void step_spindle(struct simulation *s)
 {
-    const double cycle_s = 1e-6 * (double)s->controller.machine.cycle_us;
+    const double cycle_s = machine_cycle_s(&s->controller.machine);
     const double cut_nm =
         virtual_spindle_cut_nm(&s->spindle, cutting_feed_mm_s(&s->controller), cut_depth_mm(s));
 

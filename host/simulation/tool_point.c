@@ -43,7 +43,7 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
         max_mm[i] = setup->machine.axis[i].travel_max_mm;
     }
     *t = (struct tool_point){
-        .cycle_s = 1e-6 * (double)setup->machine.cycle_us,
+        .cycle_s = machine_cycle_s(&setup->machine),
         .is_shaped = setup->shaper != SHAPER_NONE,
     };
     deviation_init(&t->real, &geometry, min_mm, max_mm);

@@ -146,7 +146,7 @@ static void see(void *context, const struct machine_setup *setup, struct simulat
                 const struct cycle_record *record)
 {
     struct run *run = context;
-    const double cycle_s = 1e-6 * (double)setup->machine.cycle_us;
+    const double cycle_s = machine_cycle_s(&setup->machine);
     const struct point last = run->last;
     unsigned i, k;
 

@@ -169,7 +169,7 @@ static bool choose_axes(void *context, const struct machine_setup *setup)
             run->axes |= 1U << i;
     }
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        run->record[i].cycle_s = 1e-6 * (double)setup->machine.cycle_us;
+        run->record[i].cycle_s = machine_cycle_s(&setup->machine);
     if (run->axes == 0)
         message_command_error("there is no linear axis with a drive on CAN");
     return run->axes != 0;

@@ -199,7 +199,7 @@ static void print_machine(const struct precision *p)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &p->machine.axis[i];
-        double cycle_s = 1e-6 * (double)p->machine.cycle_us;
+        double cycle_s = machine_cycle_s(&p->machine);
         double ramp;
         struct bounds_cycles n;
 
