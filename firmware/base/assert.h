@@ -8,8 +8,10 @@
 #ifndef TAKT_BASE_ASSERT_H
 #define TAKT_BASE_ASSERT_H
 
-/* What an image leaves out: file and line say it. */
-#ifndef TAKT_ASSERT_TEXT
+/* Images leave the text out: file and line say it. */
+#ifdef TAKT_ASSERT_WITHOUT_TEXT
+#define TAKT_ASSERT_TEXT(condition) ((const char *)0)
+#else
 #define TAKT_ASSERT_TEXT(condition) #condition
 #endif
 

@@ -201,13 +201,15 @@ static void send_starting(struct drives *d, const struct can_port *port)
     }
 }
 
-/* Nearest whole number, halves away from zero. x: within INCREMENTS_MAX and a half. */
+/*
+ * Nearest whole number, halves away from zero: what is added is the last double below a half, so that a half is rounded up
+ * to the next whole number by the sum itself and the last double below a half is not. x: within INCREMENTS_MAX and a half.
+ */
 static int32_t nearest(double x)
 {
-    const int32_t whole = (int32_t)x;
-    const double rest = x - whole;
+    const double below_half = 0.5 - 0x1p-54;
 
-    return rest >= 0.5 ? whole + 1 : rest <= -0.5 ? whole - 1 : whole;
+    return (int32_t)(x + (x < 0.0 ? -below_half : below_half));
 }
 
 /* increments = round(setpoint increments_per_mm). NaN fails the comparison. */

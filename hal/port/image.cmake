@@ -5,7 +5,7 @@ set(TAKT_IMAGE_FOLDER ${CMAKE_CURRENT_LIST_DIR})
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 # No vectors: coefficients of a volume are taken one by one. Who stops at a broken invariant wants its file and line alone.
-target_compile_definitions(takt_flags INTERFACE GRID_LANES=1 "TAKT_ASSERT_TEXT(condition)=((const char *)0)")
+target_compile_definitions(takt_flags INTERFACE GRID_LANES=1 TAKT_ASSERT_WITHOUT_TEXT)
 
 # The start of an image, and what stands under it.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES riscv)

@@ -340,6 +340,36 @@ static void test_a_bus_too_slow_for_the_cycle_does_not_go_unnoticed(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&master));
 }
 
+/* A power of two: setpoints are increments but for an exponent. */
+static void test_targets_are_the_nearest_increments_and_halves_go_away_from_zero(void)
+{
+    static const struct {
+        double increments;
+        int32_t target;
+    } rows[] = {{0.5, 1},
+                {0.5 - 0x1p-54, 0},
+                {0.5 + 0x1p-53, 1},
+                {1.5 - 0x1p-52, 1},
+                {1.5, 2},
+                {2.5, 3},
+                {1e5 + 0.5, 100001},
+                {1e5 + 0.4999, 100000},
+                {0x1p30 + 0.5, (1 << 30) + 1},
+                {0.0, 0},
+                {INT32_MAX + 0.49, INT32_MAX}};
+    struct point here = {{0}};
+    start(&here);
+    for (unsigned i = 0; i < DRIVES; i++)
+        master.axis[i].config.increments_per_mm = 0x1p17;
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        here.at[AXIS_X] = rows[i].increments / 0x1p17;
+        here.at[AXIS_Y] = -here.at[AXIS_X];
+        takt_drives_send(&master, &port, &here);
+        TEST_ASSERT_EQUAL_INT32(rows[i].target, master.axis[0].target_inc);
+        TEST_ASSERT_EQUAL_INT32(-rows[i].target, master.axis[1].target_inc);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -353,5 +383,6 @@ int main(void)
     RUN_TEST(test_a_moving_machine_stops_when_one_node_is_stopped);
     RUN_TEST(test_axes_stay_on_the_path_when_setpoints_are_brought_to_rest_after_a_fault);
     RUN_TEST(test_a_bus_too_slow_for_the_cycle_does_not_go_unnoticed);
+    RUN_TEST(test_targets_are_the_nearest_increments_and_halves_go_away_from_zero);
     return UNITY_END();
 }
