@@ -5,17 +5,29 @@
 
 #include <string.h>
 
-/* How long the axes stand at both ends: a part of the rounding of changes of rate, and cycles. */
-#define STANDING        1.75
+/* How the rate changes while the axes stand: from none to all of it in this part of what changes are rounded over. */
+#define STANDING_RAMP 0.5
+
+/* Windows and ramps are whole cycles, and so is where the trapezoidal reference begins. */
 #define STANDING_CYCLES 4.0
 
 /*
- * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and
- * falls: in half of what it is rounded over, and as long again until the setpoint has come so far.
+ * At both ends of what begins and ends at rest by itself the axes stand, and the rate of nominal time rises and falls: over
+ * a ramp of R and, of the setpoint, the windows W of its averages more. By then nominal time is at R/2 + W/2.
  */
-double takt_smooth_standing_s(const struct smooth *s)
+static double ramp_s(const struct smooth *s)
 {
-    return STANDING * s->change.rounding_s + STANDING_CYCLES * s->limits.cycle_s;
+    return 0.5 * (STANDING_RAMP + s->limits.windows) * s->change.rounding_s;
+}
+
+static double standing_s(const struct smooth *s)
+{
+    return ramp_s(s) + STANDING_CYCLES * s->limits.cycle_s;
+}
+
+double takt_smooth_rest_s(const struct smooth *s)
+{
+    return standing_s(s) + ramp_s(s);
 }
 
 /* Control point of a piece; exactly the programmed end where it is that. */
@@ -74,13 +86,13 @@ void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const st
     s->stand_rotary = of->rotary;
     s->stand_number = of->number;
     s->stand_at = *at;
-    s->standing = (unsigned)(takt_smooth_standing_s(s) / s->window.interval_s) + 1;
+    s->standing = (unsigned)(standing_s(s) / s->window.interval_s) + 1;
     s->leaves = leaves;
 }
 
 void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
 {
-    const double change_per_s = 2.0 / s->change.rounding_s;
+    const double change_per_s = 1.0 / (STANDING_RAMP * s->change.rounding_s);
     const struct point at = s->stand_at;
 
     TAKT_ASSERT(s->standing > 0);

@@ -6,8 +6,8 @@
 
 #include "smooth/smooth.h"
 
-/* How long the axes stand where a curve begins and ends at rest, s. */
-double takt_smooth_standing_s(const struct smooth *s);
+/* What a curve takes longer where it begins, or ends, at rest: the axes stand while the rate rises, and falls, s. */
+double takt_smooth_rest_s(const struct smooth *s);
 /* The latest element that has been told: after a stop the curve goes on from where it can have come to, which may be before. */
 uint32_t takt_smooth_tell(struct smooth *s, uint32_t element);
 /* The next one of those that are ready. */

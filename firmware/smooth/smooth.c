@@ -293,7 +293,7 @@ static void choose(struct smooth *s)
                                      .change = &s->change,
                                      .pieces = s->ready + s->proved,
                                      .kept = s->ready,
-                                     .standing_s = (float)takt_smooth_standing_s(s),
+                                     .rest_s = (float)takt_smooth_rest_s(s),
                                      .starts = rests,
                                      .finished = s->finished};
     const bool slower = takt_worth_path(&now, &s->since);

@@ -3,16 +3,49 @@
 #include "smooth/exact.h"
 #include "smooth/single.h"
 
-/* Time of a piece at its rate, s. */
-static float piece_time(const struct worth_window *now, unsigned piece)
+/* What binds the rate of nominal time on the pieces of a window. */
+struct pace {
+    float most[SMOOTH_SAMPLES_MAX];   /* of it on each piece, */
+    float change[SMOOTH_SAMPLES_MAX]; /* by how much its square may change there, */
+    float at[SMOOTH_SAMPLES_MAX +
+             1]; /* and what it is where each begins, and where the last one ends */
+};
+
+static void set_piece(const struct worth_window *now, unsigned i, struct pace *p)
 {
     const struct window *w = now->window;
     struct verifier_need need;
     struct verifier_rate rate;
 
-    takt_verifier_need(w, now->route, piece, &need);
-    takt_verifier_rate(&need, now->route, now->route->first + w->paced[piece], now->change, &rate);
-    return (float)w->interval_s / single_min(1.0f, single_min(rate.most, rate.programmed));
+    takt_verifier_need(w, now->route, i, &need);
+    takt_verifier_rate(&need, now->route, now->route->first + w->paced[i], now->change, &rate);
+    const float most = single_min(1.0f, rate.most);
+
+    p->most[i] = single_min(most, rate.programmed);
+    p->change[i] =
+        2.0f * (float)w->interval_s * takt_verifier_change_on(&need, now->route, now->change, most);
+}
+
+/*
+ * The rate as the trapezoidal reference has it: r^2 rises and falls by 2 r' d on a piece of d at most, from what it is where the
+ * pieces begin. What follows them binds it no more than the last one does.
+ */
+static void find_pace(const struct worth_window *now, float from, struct pace *p)
+{
+    const unsigned n = now->pieces;
+    float next = SINGLE_INFINITY;
+
+    for (unsigned i = 0; i < n; i++) {
+        set_piece(now, i, p);
+    }
+    for (unsigned i = n; i > 0; i--) {
+        p->at[i] = single_min(next, p->most[i - 1]);
+        next = single_min(p->most[i - 1], single_sqrt(p->at[i] * p->at[i] + p->change[i - 1]));
+    }
+    p->at[0] = single_min(from, next);
+    for (unsigned i = 0; i < n; i++) {
+        p->at[i + 1] = single_min(p->at[i + 1], single_sqrt(p->at[i] * p->at[i] + p->change[i]));
+    }
 }
 
 /* The place where the path rests first behind the start of an element, or its end: index of an element. */
@@ -32,6 +65,8 @@ struct passed {
     float time;
     float feed;
     float kept;
+    float rate; /* there */
+    float stop; /* what coming to rest where they begin takes longer than to go on */
 };
 
 /* v/2a + w a/2j, a^2 <= v j/w: what a ramp from rest takes longer than its way at the feed. */
@@ -44,16 +79,21 @@ static float ramp(const struct worth_window *now, uint32_t element, float feed)
     return a > 0.0f ? 0.5f * (feed / a + a / j) : 0.0f;
 }
 
-/* Goes along the pieces; returns the time for them. */
-static float go(const struct worth_window *now, struct passed *last)
+/* Goes along the pieces from a rate on; returns the time for them. */
+static float go(const struct worth_window *now, float from, struct passed *last)
 {
+    struct pace pace;
     const struct window *w = now->window;
     uint32_t next = next_rest(now, w->element[0]);
-    float time = now->starts ? now->standing_s : 0.0f;
+    float time = now->starts ? now->rest_s : 0.0f;
 
-    *last = (struct passed){.element = next};
+    find_pace(now, now->starts ? 1.0f : from, &pace);
+    *last = (struct passed){.element = next, .rate = pace.at[now->kept]};
+    if (now->pieces > 0) {
+        last->stop = pace.at[0] * (float)w->interval_s / pace.change[0];
+    }
     for (unsigned i = 0; i < now->pieces; i++) {
-        const float takes = piece_time(now, i);
+        const float takes = 2.0f * (float)w->interval_s / (pace.at[i] + pace.at[i + 1]);
 
         time += takes;
         last->kept = i < now->kept ? time : last->kept;
@@ -114,12 +154,12 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
     const struct route *r = now->route;
     const double at_mm = w->at_mm[0];
     struct passed last;
-    const float time = go(now, &last);
+    const float time = go(now, 1.0f, &last);
 
     *to_mm = takt_route_end(r);
     if (now->finished &&
         takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
-            time + now->standing_s +
+            time + now->rest_s +
                 time_between(now, w->element[now->pieces + 1], w->at_mm[now->pieces + 1], *to_mm)) {
         return true;
     }
@@ -128,7 +168,7 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
         return takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) <
                last.time - ramp(now, last.element, last.feed);
     }
-    const float gained = now->finished ? time_of_rests(now) - now->standing_s : now->standing_s;
+    const float gained = now->finished ? time_of_rests(now) - now->rest_s : now->rest_s;
 
     return time_to(now) + gained < time ||
            takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
@@ -152,10 +192,9 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
     const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
-    const float change = now->standing_s + 2.0f * ramp(now, w->element[1], feed);
     uint32_t first = w->element[1];
     struct passed last;
-    const float time = go(now, &last);
+    const float time = go(now, since->rate, &last);
 
     while (first > now->route->first && !takt_exact_rests(now->route, now->machine, first)) {
         first--;
@@ -164,6 +203,9 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
         *since = (struct worth_since){.element = first};
     }
     const float spent = since->spent_s;
+    const float change = now->rest_s + last.stop + ramp(now, w->element[1], feed);
+
+    since->rate = last.rate;
 
     since->spent_s += last.kept;
     return spent > 0.0f && path_time(now, first) + change < spent + time;

@@ -14,16 +14,17 @@ struct worth_window {
     const struct smooth_limits *machine;
     const struct verifier_change *change;
     unsigned pieces;
-    unsigned kept;    /* of them: these are handed on */
-    float standing_s; /* what a curve takes longer where it begins and ends at rest */
-    bool starts;      /* the first one begins at rest */
-    bool finished;    /* nothing follows in the chain */
+    unsigned kept; /* of them: these are handed on */
+    float rest_s;  /* what a curve takes longer where it begins and ends at rest */
+    bool starts;   /* the first one begins at rest */
+    bool finished; /* nothing follows in the chain */
 };
 
 /* What the curve has taken since it came to the stretch of path between two rests that it is on. */
 struct worth_since {
     uint32_t element; /* the first one of that */
     float spent_s;
+    float rate; /* of nominal time where what was handed on last ends */
 };
 
 /*
