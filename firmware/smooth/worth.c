@@ -174,6 +174,21 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
            takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
 }
 
+/*
+ * What a part of a way from rest to rest takes: half of what getting going and braking take longer than its feed, r, and its
+ * way at that; before the feed is reached sqrt(2 x r), x the way at the feed. all: what all of it takes; cruise: at its feed.
+ */
+static float time_of_part(float all, float cruise, float part)
+{
+    const float at_feed =
+        single_max(cruise, 0.5f * all); /* half the time where it is not reached */
+    const float ramps = all - at_feed;
+    const float x = single_min(part, 1.0f - part) * at_feed;
+    const float time = 2.0f * x < ramps ? single_sqrt(2.0f * x * ramps) : x + 0.5f * ramps;
+
+    return part > 0.5f ? all - time : time;
+}
+
 /* From rest at the start of an element to where the pieces end, of the last element a part. */
 static float path_time(const struct worth_window *now, uint32_t first)
 {
@@ -181,13 +196,18 @@ static float path_time(const struct worth_window *now, uint32_t first)
     const double at_mm = now->window->at_mm[now->pieces + 1];
     const uint32_t last = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
     const double start_mm = route_element(r, last)->start_mm;
-    const double part = (at_mm - start_mm) / (route_end_of(r, last) - start_mm);
+    const float length = (float)(route_end_of(r, last) - start_mm);
 
     return takt_exact_time(r, now->machine, 0.0, first, last) +
-           (float)part * takt_exact_time(r, now->machine, 0.0, last, last + 1);
+           time_of_part(takt_exact_time(r, now->machine, 0.0, last, last + 1),
+                        length / route_element(r, last)->feed_mm_s,
+                        (float)(at_mm - start_mm) / length);
 }
 
-/* To change over the curve must first come to rest, and the path get going from there. Where a stretch begins nothing can be told. */
+/*
+ * To change over the curve must first come to rest, and the path get going from there. Of the stretch's time before the window what
+ * is not known counts as none: the curve seems the quicker.
+ */
 bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
@@ -208,5 +228,5 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
     since->rate = last.rate;
 
     since->spent_s += last.kept;
-    return spent > 0.0f && path_time(now, first) + change < spent + time;
+    return path_time(now, first) + change < spent + time;
 }
