@@ -157,11 +157,15 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
     const float time = go(now, 1.0f, &last);
 
     *to_mm = takt_route_end(r);
-    if (now->finished &&
-        takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
-            time + now->rest_s +
-                time_between(now, w->element[now->pieces + 1], w->at_mm[now->pieces + 1], *to_mm)) {
-        return true;
+    if (now->finished) {
+        const double end_mm = w->at_mm[now->pieces + 1];
+        const bool quicker = takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
+                             time + now->rest_s +
+                                 time_between(now, w->element[now->pieces + 1], end_mm, *to_mm);
+
+        if (quicker || end_mm == *to_mm) {
+            return quicker;
+        }
     }
     *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
     if (last.time > 0.0f) {
