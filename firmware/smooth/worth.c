@@ -124,17 +124,37 @@ static float time_between(const struct worth_window *now, uint32_t element, doub
     return time;
 }
 
-/* What the path takes to where the pieces end, all of it at nominal feed but for getting going. */
-static float time_to(const struct worth_window *now)
+/*
+ * What a part of a way from rest to rest takes: half of what getting going and braking take longer than its feed, r, and its
+ * way at that; before the feed is reached sqrt(2 x r), x the way at the feed. all: what all of it takes; cruise: at its feed.
+ */
+static float time_of_part(float all, float cruise, float part)
 {
-    const struct route_element *e = route_element(now->route, now->window->element[0]);
+    const float at_feed =
+        single_max(cruise, 0.5f * all); /* half the time where it is not reached */
+    const float ramps = all - at_feed;
+    const float x = single_min(part, 1.0f - part) * at_feed;
+    const float time = 2.0f * x < ramps ? single_sqrt(2.0f * x * ramps) : x + 0.5f * ramps;
 
-    return time_between(now, now->window->element[0], now->window->at_mm[0],
-                        now->window->at_mm[now->pieces + 1]) +
-           ramp(now, now->window->element[0], e->feed_mm_s);
+    return part > 0.5f ? all - time : time;
 }
 
-/* What all rests ahead cost it, beyond that. */
+/* From rest at the start of an element to where the pieces end, of the last element a part. */
+static float path_time(const struct worth_window *now, uint32_t first)
+{
+    const struct route *r = now->route;
+    const double at_mm = now->window->at_mm[now->pieces + 1];
+    const uint32_t last = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
+    const double start_mm = route_element(r, last)->start_mm;
+    const float length = (float)(route_end_of(r, last) - start_mm);
+
+    return takt_exact_time(r, now->machine, 0.0, first, last) +
+           time_of_part(takt_exact_time(r, now->machine, 0.0, last, last + 1),
+                        length / route_element(r, last)->feed_mm_s,
+                        (float)(at_mm - start_mm) / length);
+}
+
+/* What all rests ahead cost it, beyond its way at the nominal feed. */
 static float time_of_rests(const struct worth_window *now)
 {
     uint32_t rest = next_rest(now, now->window->element[0]);
@@ -174,38 +194,8 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
     }
     const float gained = now->finished ? time_of_rests(now) - now->rest_s : now->rest_s;
 
-    return time_to(now) + gained < time ||
+    return path_time(now, w->element[0]) + gained < time ||
            takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
-}
-
-/*
- * What a part of a way from rest to rest takes: half of what getting going and braking take longer than its feed, r, and its
- * way at that; before the feed is reached sqrt(2 x r), x the way at the feed. all: what all of it takes; cruise: at its feed.
- */
-static float time_of_part(float all, float cruise, float part)
-{
-    const float at_feed =
-        single_max(cruise, 0.5f * all); /* half the time where it is not reached */
-    const float ramps = all - at_feed;
-    const float x = single_min(part, 1.0f - part) * at_feed;
-    const float time = 2.0f * x < ramps ? single_sqrt(2.0f * x * ramps) : x + 0.5f * ramps;
-
-    return part > 0.5f ? all - time : time;
-}
-
-/* From rest at the start of an element to where the pieces end, of the last element a part. */
-static float path_time(const struct worth_window *now, uint32_t first)
-{
-    const struct route *r = now->route;
-    const double at_mm = now->window->at_mm[now->pieces + 1];
-    const uint32_t last = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
-    const double start_mm = route_element(r, last)->start_mm;
-    const float length = (float)(route_end_of(r, last) - start_mm);
-
-    return takt_exact_time(r, now->machine, 0.0, first, last) +
-           time_of_part(takt_exact_time(r, now->machine, 0.0, last, last + 1),
-                        length / route_element(r, last)->feed_mm_s,
-                        (float)(at_mm - start_mm) / length);
 }
 
 /*
