@@ -23,6 +23,12 @@
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
 
+/*
+ * A curve that is not worth it is looked for once more in this part of that: in a tube as wide as the path's own strokes there is
+ * no telling which of them a place belongs to.
+ */
+#define NARROWER 0.25
+
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
 
@@ -140,9 +146,9 @@ void takt_smooth_finish(struct smooth *s)
     }
 }
 
-static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
+static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, double part)
 {
-    takt_relax_window(&scratch->relax, &s->window, &s->route, AIM * s->route.tolerance_mm);
+    takt_relax_window(&scratch->relax, &s->window, &s->route, part * AIM * s->route.tolerance_mm);
     takt_window_locate(&s->window, &s->route);
 }
 
@@ -230,7 +236,8 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ve
  * them. Where that brings it no nearer the curve would only come there later and later. A corner that was left out is
  * noticed some way behind it: it is slow where all was whole.
  */
-static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
+static void slow_down(struct smooth *s, union smooth_scratch *scratch, double part,
+                      struct verifier_verdict *v)
 {
     float before_mm = SINGLE_INFINITY;
 
@@ -243,7 +250,7 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ve
         before_mm = v->beyond_mm > 0.0f ? v->beyond_mm : SINGLE_INFINITY;
         takt_timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
         takt_window_extend(&s->window, &s->route);
-        relax_and_locate(s, scratch);
+        relax_and_locate(s, scratch, part);
         verified(s, v);
     }
 }
@@ -280,45 +287,58 @@ static bool is_stuck(const struct smooth *s)
     return s->ready == 0 || (s->proved == 0 && !is_end(s, s->ready));
 }
 
+/* What is asked of a curve and of the path. */
+static struct worth_window asked(const struct smooth *s)
+{
+    return (struct worth_window){.window = &s->window,
+                                 .route = &s->route,
+                                 .machine = &s->limits,
+                                 .change = &s->change,
+                                 .pieces = s->ready + s->proved,
+                                 .kept = s->ready,
+                                 .rest_s = (float)takt_smooth_rest_s(s),
+                                 .starts = s->head.proved == 0,
+                                 .finished = s->finished};
+}
+
+/* From rest every way is open: is the path itself the quicker, or the only one? to_mm: to there. */
+static bool prefers_path(const struct smooth *s, double *to_mm)
+{
+    const struct worth_window now = asked(s);
+    struct worth_since since = s->since;
+
+    return takt_worth_path_from_rest(&now, to_mm) || takt_worth_path(&now, &since) || is_stuck(s);
+}
+
 /*
  * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved last is gone to its end; and
  * from rest, where every way is open again, the path itself is taken.
  */
 static void choose(struct smooth *s)
 {
-    const bool rests = s->head.proved == 0;
-    const struct worth_window now = {.window = &s->window,
-                                     .route = &s->route,
-                                     .machine = &s->limits,
-                                     .change = &s->change,
-                                     .pieces = s->ready + s->proved,
-                                     .kept = s->ready,
-                                     .rest_s = (float)takt_smooth_rest_s(s),
-                                     .starts = rests,
-                                     .finished = s->finished};
-    const bool slower = takt_worth_path(&now, &s->since);
+    const struct worth_window now = asked(s);
     double to_mm;
+    const bool path = now.starts && prefers_path(s, &to_mm);
+    const bool slower = takt_worth_path(&now, &s->since);
 
-    if (rests) {
-        if (takt_worth_path_from_rest(&now, &to_mm) || slower || is_stuck(s)) {
-            take_path(s, to_mm);
-        }
-    } else if (is_stuck(s) || slower || takt_fill_needs_other_interval(s)) {
+    if (path) {
+        take_path(s, to_mm);
+    } else if (!now.starts && (is_stuck(s) || slower || takt_fill_needs_other_interval(s))) {
         fall_back(s);
     }
 }
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
 static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
-                       struct verifier_verdict *v)
+                       double part, struct verifier_verdict *v)
 {
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s, scratch);
+        relax_and_locate(s, scratch, part);
         takt_timing_again(&scratch->timing, &s->window, &s->route);
         takt_window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s, scratch);
-    slow_down(s, scratch, v);
+    relax_and_locate(s, scratch, part);
+    slow_down(s, scratch, part, v);
     time_last(s, scratch, v);
     s->ends = s->finished && s->window.at_end;
     const unsigned good = v->whole[v->good];
@@ -327,23 +347,41 @@ static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned
     s->proved = good - s->ready;
 }
 
-/* In motion the window begins with what was found before. Where no way leads on from that, one is looked for from nothing. */
-static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
+/* From nothing but what is kept for good. */
+static void search_anew(struct smooth *s, union smooth_scratch *scratch, double part,
+                        struct verifier_verdict *v)
 {
-    const bool goes_on = s->head.proved > 0;
-    struct verifier_verdict v;
+    s->window.count = SMOOTH_FIXED;
+    s->window.at_end = false;
+    takt_window_extend(&s->window, &s->route);
+    search_way(s, scratch, ROUNDS_FIRST, part, v);
+}
 
-    search_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, &v);
+/*
+ * The window for the next pieces; false when more must be known first. In motion it begins with what was found before; where no way
+ * leads on from that, one is looked for from nothing.
+ */
+static bool next_window(struct smooth *s, union smooth_scratch *scratch)
+{
+    const bool goes_on = s->proved > 0;
+    struct verifier_verdict v;
+    double to_mm;
+
+    takt_head_keep(&s->head, &s->window, &s->route, s->proved);
+    if (!takt_fill(s)) {
+        return false;
+    }
+    search_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, 1.0, &v);
     if (goes_on && is_stuck(s)) {
-        s->window.count = SMOOTH_FIXED;
-        s->window.at_end = false;
-        takt_window_extend(&s->window, &s->route);
-        search_way(s, scratch, ROUNDS_FIRST, &v);
+        search_anew(s, scratch, 1.0, &v);
+    } else if (!goes_on && prefers_path(s, &to_mm)) {
+        search_anew(s, scratch, NARROWER, &v);
     }
     choose(s);
     if (s->ready > 0) {
         follow_ready(s, &v);
     }
+    return true;
 }
 
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
@@ -361,17 +399,6 @@ static void drop_taken(struct smooth *s)
     if (s->window.count > 0) {
         takt_route_forget(&s->route, s->window.at_mm[0]);
     }
-}
-
-/* The window for the next pieces; false when more must be known first. */
-static bool next_window(struct smooth *s, union smooth_scratch *scratch)
-{
-    takt_head_keep(&s->head, &s->window, &s->route, s->proved);
-    if (!takt_fill(s)) {
-        return false;
-    }
-    smooth_window(s, scratch);
-    return true;
 }
 
 /* Where the path has come to the end of an element. It is left where it rests. */

@@ -179,9 +179,9 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
     *to_mm = takt_route_end(r);
     if (now->finished) {
         const double end_mm = w->at_mm[now->pieces + 1];
-        const bool quicker = takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
-                             time + now->rest_s +
-                                 time_between(now, w->element[now->pieces + 1], end_mm, *to_mm);
+        const bool quicker =
+            takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
+            time + now->rest_s + time_between(now, w->element[now->pieces + 1], end_mm, *to_mm);
 
         if (quicker || end_mm == *to_mm) {
             return quicker;
