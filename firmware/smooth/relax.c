@@ -40,10 +40,10 @@
 /* What the axis of the least acceleration needs counts for all, up to this many times what that of the most needs. */
 #define SECOND_SPAN 4.0f
 
-/* What a curved route may leave its tangent by for that to stand for it, as a part of the tolerance. */
+/* What a curved route may leave its tangent by for that to stand for it: s^2/2R, in tolerances. */
 #define CURVED 0.05f
 
-/* The tube beside a curved route is narrower than its radius, or places in it would have no one closest point. */
+/* The tube beside a curve is narrower than its radius: places in it have one closest point. */
 #define TUBE_OF_RADIUS 0.25f
 
 /* How one iteration forms t and p; weight: of the tolerance. */
@@ -147,15 +147,12 @@ static void set_closest(struct relax *x, const struct window *w, const struct ro
     takt_window_place(w, r, &spot, p);
     takt_route_closest(r, p, from, to, &closest);
     look_ahead(ahead, r, &closest, tolerance_mm);
-    float ways[AXIS_COUNT];
-    const float curvature =
-        takt_route_curvature(r, closest.element, closest.at_mm, ways) * tolerance_mm;
+    const float radius = takt_route_radius(r, closest.element, closest.at_mm) / tolerance_mm;
     const float straight =
-        curvature > 0.0f ? single_sqrt(2.0f * CURVED / curvature) : SINGLE_INFINITY;
+        TUBE_OF_RADIUS * radius < 1.0f ? 0.0f : single_sqrt(2.0f * CURVED * radius);
     const double start = maths_max(from, route_element(r, closest.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, closest.element));
 
-    x->tube[i] = curvature > TUBE_OF_RADIUS ? TUBE_OF_RADIUS / curvature : 1.0f;
     x->low[i] = single_max((float)(start - closest.at_mm) * ahead->per_mm, -straight);
     x->high[i] = single_min((float)(end - closest.at_mm) * ahead->per_mm, straight);
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -268,7 +265,8 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
     }
     takt_window_reach(w, i, &from, &to);
     takt_route_closest(r, p, from, to, &closest);
-    const float tube_mm = x->tube[i] * tolerance_mm;
+    const float tube_mm = single_min(
+        tolerance_mm, TUBE_OF_RADIUS * takt_route_radius(r, closest.element, closest.at_mm));
     const float less = closest.distance_mm > tube_mm ? 1.0f - tube_mm / closest.distance_mm : 0.0f;
 
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -312,7 +310,7 @@ static bool pull_to_line(const struct relax *x, const struct window *w, unsigned
         square += lanes_sum(off[g] * off[g]);
     }
     const float distance = single_sqrt(square);
-    const float less = distance > x->tube[i] ? 1.0f - x->tube[i] / distance : 0.0f;
+    const float less = distance > 1.0f ? 1.0f - 1.0f / distance : 0.0f;
 
     for (unsigned g = 0; g < groups; g++) {
         z[g] = x->near[g * w->capacity + i] - off[g] * less;
@@ -374,13 +372,6 @@ static inline lanes squares_of(const struct relax *x, const struct window *w, un
     return square.even + square.odd;
 }
 
-/* The square of the radius within which the tangent stands for a curved route. */
-static inline lanes inner(const struct relax *x, unsigned i)
-{
-    const lanes radius = (1.0f - CURVED) * lanes_at(x->tube + i);
-    return radius * radius;
-}
-
 /* Places t that are not within the tube beside their sample, or where it is not that straight, are pulled there. */
 static void into_tube(struct relax *x, const struct window *w, const struct route *r,
                       const struct relax_pass *pass, float tolerance_mm)
@@ -389,7 +380,7 @@ static void into_tube(struct relax *x, const struct window *w, const struct rout
         lanes s;
         const lanes square = squares_of(x, w, r->slots.groups, i, &s);
         const lanes_int inside = (s >= lanes_at(x->low + i)) & (s <= lanes_at(x->high + i)) &
-                                 (square - s * s <= inner(x, i));
+                                 (square - s * s <= (1.0f - CURVED) * (1.0f - CURVED));
 
         for (unsigned k = 0; k < SMOOTH_LANES && lanes_any(~inside); k++) {
             if (!inside[k] && i + k > 0 && i + k + 2 < w->count) {
@@ -473,7 +464,6 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     memset(x->closest, 0, sizeof x->closest);
     memset(x->along, 0, sizeof x->along);
     memset(x->band, 0, sizeof x->band);
-    memset(x->tube, 0, sizeof x->tube);
     for (unsigned i = 1; i + 2 < w->count; i++) {
         set_closest(x, w, r, i, tolerance_mm, &ahead);
     }

@@ -371,13 +371,18 @@ float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, 
     return single_sqrt(square);
 }
 
-/* s^2 |x''| / 2 = within */
-float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+float takt_route_radius(const struct route *r, uint32_t index, double at_mm)
 {
     float k[AXIS_COUNT];
     const float curvature = takt_route_curvature(r, index, at_mm, k);
 
-    return curvature > 0.0f ? single_sqrt(2.0f * within_mm / curvature) : SINGLE_INFINITY;
+    return curvature > 0.0f ? 1.0f / curvature : SINGLE_INFINITY;
+}
+
+/* s^2/2R = within */
+float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+{
+    return single_sqrt(2.0f * within_mm * takt_route_radius(r, index, at_mm));
 }
 
 void takt_route_corner(const struct route *r, uint32_t index, float before[], float after[])

@@ -154,6 +154,8 @@ bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct 
 float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
 /* Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a mm of it. */
 float takt_route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
+/* Radius of its curvature there; infinite on lines. */
+float takt_route_radius(const struct route *r, uint32_t index, double at_mm);
 /* How far from that place to both sides an element leaves its tangent by no more than so much. */
 float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm);
 /* Those at both sides of the start of an element that is not the first. */

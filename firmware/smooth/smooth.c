@@ -23,10 +23,7 @@
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
 
-/*
- * A curve that is not worth it is looked for once more in this part of that: in a tube as wide as the path's own strokes there is
- * no telling which of them a place belongs to.
- */
+/* In this part of that a curve is looked for once more that is not worth it: strokes may lie closer together. */
 #define NARROWER 0.25
 
 /* Times that a window is slowed down because a piece leaves the tolerance. */
@@ -226,9 +223,9 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ve
     verified(s, &again);
     if (again.good >= wanted(s)) {
         *v = again;
-        return;
+    } else {
+        s->window = scratch->timing.window;
     }
-    s->window = scratch->timing.window;
 }
 
 /*
@@ -288,12 +285,13 @@ static bool is_stuck(const struct smooth *s)
 }
 
 /* What is asked of a curve and of the path. */
-static struct worth_window asked(const struct smooth *s)
+static struct worth_window asked(const struct smooth *s, union smooth_scratch *scratch)
 {
     return (struct worth_window){.window = &s->window,
                                  .route = &s->route,
                                  .machine = &s->limits,
                                  .change = &s->change,
+                                 .pace = &scratch->pace,
                                  .pieces = s->ready + s->proved,
                                  .kept = s->ready,
                                  .rest_s = (float)takt_smooth_rest_s(s),
@@ -302,9 +300,9 @@ static struct worth_window asked(const struct smooth *s)
 }
 
 /* From rest every way is open: is the path itself the quicker, or the only one? to_mm: to there. */
-static bool prefers_path(const struct smooth *s, double *to_mm)
+static bool prefers_path(const struct smooth *s, union smooth_scratch *scratch, double *to_mm)
 {
-    const struct worth_window now = asked(s);
+    const struct worth_window now = asked(s, scratch);
     struct worth_since since = s->since;
 
     return takt_worth_path_from_rest(&now, to_mm) || takt_worth_path(&now, &since) || is_stuck(s);
@@ -314,11 +312,11 @@ static bool prefers_path(const struct smooth *s, double *to_mm)
  * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved last is gone to its end; and
  * from rest, where every way is open again, the path itself is taken.
  */
-static void choose(struct smooth *s)
+static void choose(struct smooth *s, union smooth_scratch *scratch)
 {
-    const struct worth_window now = asked(s);
+    const struct worth_window now = asked(s, scratch);
     double to_mm;
-    const bool path = now.starts && prefers_path(s, &to_mm);
+    const bool path = now.starts && prefers_path(s, scratch, &to_mm);
     const bool slower = takt_worth_path(&now, &s->since);
 
     if (path) {
@@ -347,7 +345,7 @@ static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned
     s->proved = good - s->ready;
 }
 
-/* From nothing but what is kept for good. */
+/* From nothing but what is kept. */
 static void search_anew(struct smooth *s, union smooth_scratch *scratch, double part,
                         struct verifier_verdict *v)
 {
@@ -374,10 +372,10 @@ static bool next_window(struct smooth *s, union smooth_scratch *scratch)
     search_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, 1.0, &v);
     if (goes_on && is_stuck(s)) {
         search_anew(s, scratch, 1.0, &v);
-    } else if (!goes_on && prefers_path(s, &to_mm)) {
+    } else if (!goes_on && prefers_path(s, scratch, &to_mm)) {
         search_anew(s, scratch, NARROWER, &v);
     }
-    choose(s);
+    choose(s, scratch);
     if (s->ready > 0) {
         follow_ready(s, &v);
     }

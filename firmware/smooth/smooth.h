@@ -59,6 +59,7 @@ enum smooth_taken {
 union smooth_scratch {
     struct relax relax;
     struct timing timing;
+    struct worth_pace pace;
 };
 
 struct smooth {

@@ -3,15 +3,7 @@
 #include "smooth/exact.h"
 #include "smooth/single.h"
 
-/* What binds the rate of nominal time on the pieces of a window. */
-struct pace {
-    float most[SMOOTH_SAMPLES_MAX];   /* of it on each piece, */
-    float change[SMOOTH_SAMPLES_MAX]; /* by how much its square may change there, */
-    float at[SMOOTH_SAMPLES_MAX +
-             1]; /* and what it is where each begins, and where the last one ends */
-};
-
-static void set_piece(const struct worth_window *now, unsigned i, struct pace *p)
+static void set_piece(const struct worth_window *now, unsigned i, struct worth_pace *p)
 {
     const struct window *w = now->window;
     struct verifier_need need;
@@ -30,8 +22,9 @@ static void set_piece(const struct worth_window *now, unsigned i, struct pace *p
  * The rate as the trapezoidal reference has it: r^2 rises and falls by 2 r' d on a piece of d at most, from what it is where the
  * pieces begin. What follows them binds it no more than the last one does.
  */
-static void find_pace(const struct worth_window *now, float from, struct pace *p)
+static void find_pace(const struct worth_window *now, float from)
 {
+    struct worth_pace *p = now->pace;
     const unsigned n = now->pieces;
     float next = SINGLE_INFINITY;
 
@@ -82,18 +75,18 @@ static float ramp(const struct worth_window *now, uint32_t element, float feed)
 /* Goes along the pieces from a rate on; returns the time for them. */
 static float go(const struct worth_window *now, float from, struct passed *last)
 {
-    struct pace pace;
+    const struct worth_pace *pace = now->pace;
     const struct window *w = now->window;
     uint32_t next = next_rest(now, w->element[0]);
     float time = now->starts ? now->rest_s : 0.0f;
 
-    find_pace(now, now->starts ? 1.0f : from, &pace);
-    *last = (struct passed){.element = next, .rate = pace.at[now->kept]};
+    find_pace(now, now->starts ? 1.0f : from);
+    *last = (struct passed){.element = next, .rate = pace->at[now->kept]};
     if (now->pieces > 0) {
-        last->stop = pace.at[0] * (float)w->interval_s / pace.change[0];
+        last->stop = pace->at[0] * (float)w->interval_s / pace->change[0];
     }
     for (unsigned i = 0; i < now->pieces; i++) {
-        const float takes = 2.0f * (float)w->interval_s / (pace.at[i] + pace.at[i + 1]);
+        const float takes = 2.0f * (float)w->interval_s / (pace->at[i] + pace->at[i + 1]);
 
         time += takes;
         last->kept = i < now->kept ? time : last->kept;

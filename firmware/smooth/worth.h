@@ -7,12 +7,21 @@
 #include "smooth/verifier.h"
 #include "smooth/window.h"
 
+/* What binds the rate of nominal time on the pieces of a window: working memory, holds nothing between calls. */
+struct worth_pace {
+    float most[SMOOTH_SAMPLES_MAX];   /* of it on each piece, */
+    float change[SMOOTH_SAMPLES_MAX]; /* by how much its square may change there, */
+    float at[SMOOTH_SAMPLES_MAX +
+             1]; /* and what it is where each begins, and where the last one ends */
+};
+
 /* The first pieces of a window. */
 struct worth_window {
     const struct window *window;
     const struct route *route;
     const struct smooth_limits *machine;
     const struct verifier_change *change;
+    struct worth_pace *pace;
     unsigned pieces;
     unsigned kept; /* of them: these are handed on */
     float rest_s;  /* what a curve takes longer where it begins and ends at rest */
