@@ -311,6 +311,9 @@ static void test_modes_are_told_word_by_word(void)
     ask("M4 M8 G20 G93", "ok");
     settle();
     ask("$G", "[GC:G80 G54 G18 G20 G91 G93 G64 M4 M7 M8 T3 F0 S500]\r\n");
+    ask("S0.5 M3", "ok");
+    settle();
+    ask("$G", " G64 M3 M7 M8 ");
 }
 
 static void test_homing_is_answered_when_the_axes_are_there(void)
