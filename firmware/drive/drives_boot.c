@@ -384,7 +384,7 @@ static void check_period(struct drives *d)
 static void take_period(struct drives *d, const struct drives_answer *answer, uint32_t value)
 {
     unsigned part = d->at_step - SET_PERIOD;
-    d->read[part] = answer->abort_code == SDO_ABORT_NONE ? value : 0;
+    d->read[part] = value;
     d->read[2 + part] = answer->abort_code != SDO_ABORT_NONE;
     if (part == 1 && drives_has_given_up(&d->axis[d->at_axis], DRIVES_NO_PERIOD) &&
         d->read[2] + d->read[3] == 0)

@@ -77,8 +77,7 @@ static bool is_complete(const struct modbus_rtu *rtu)
 {
     size_t length;
 
-    if (rtu->length < FRAME_MIN)
-        return false;
+    TAKT_ASSERT(rtu->length > 0);
     length = takt_modbus_request_length(rtu->frame + 1, rtu->length - 1);
     return length > 0 && rtu->length == length + 3;
 }

@@ -258,10 +258,10 @@ static bool can_turn(const struct hold *h, struct hold_trial *s, float e)
     return s->change <= 0.0f || (can_change(h, s, 0.0f, -e) && s->rate <= h->most);
 }
 
-/* So hard that braking ends at rest at the latest: r = q^2/2e. At rest: any. */
+/* So hard that braking ends at rest at the latest: r = q^2/2e. */
 static float least_ease(const struct hold_trial *s)
 {
-    return s->change < 0.0f && s->rate > 0.0f ? s->change * s->change / (2.0f * s->rate) : 0.0f;
+    return s->change < 0.0f ? s->change * s->change / (2.0f * s->rate) : 0.0f;
 }
 
 /* To rest: the change goes by -e to -c, and back to 0 by e: r + (q |q| - c^2)/2e = c^2/2e where q > 0, else with -q^2. */
@@ -299,14 +299,14 @@ static bool find_ending(struct hold *h, const struct path *path, const struct re
                         const struct hold_trial *s, float hardest, bool stop, bool first,
                         struct hold_ending *ending)
 {
+    if (s->rate == 0.0f && s->change < 0.0f) {
+        return false; /* no ease is hard enough */
+    }
     const float least = least_ease(s);
     const float known = (float)h->ending.ease;
     const float other = single_max(least, ease_part[h->turn % EASES] * hardest);
     const bool tries = first && other > 0.0f && other <= hardest;
 
-    if (s->rate == 0.0f && s->change < 0.0f) {
-        return false; /* no ease is hard enough */
-    }
     return (stop && known > 0.0f && can_rest(h, *s, single_max(least, known), ending)) ||
            (stop && tries && can_rest(h, *s, other, ending)) ||
            (known > least && can_ease(h, path, l, *s, known, stop, ending)) ||

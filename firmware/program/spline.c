@@ -228,7 +228,6 @@ static bool begin_knots(struct program *p)
     const double off[2] = {at[0] - s->from_mm[0], at[1] - s->from_mm[1]};
     const double off_mm = maths_sqrt(off[0] * off[0] + off[1] * off[1]);
 
-    p->cycle.spline_open = true;
     return off_mm <= START_MM ||
            takt_report_error_code(p, TAKT_ERROR_SPLINE_START, STEP_MOTION, off_mm);
 }

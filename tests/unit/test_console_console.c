@@ -300,6 +300,22 @@ static void test_offsets_are_told_and_set_to_zero(void)
     ask("$#", "[G55:0.000,0.000,0.000]\r\n");
 }
 
+static void test_modes_are_told_word_by_word(void)
+{
+    ask("$G", "[GC:G80 G54 G17 G21 G90 G94 G61 M5 M9 T0 F0 S0]\r\n");
+    ask("G18 G91 G64 F600 S500", "ok");
+    ask("M61 Q3", "ok");
+    ask("M3 M7", "ok");
+    settle();
+    ask("$G", "[GC:G80 G54 G18 G21 G91 G94 G64 M3 M7 T3 F600 S500]\r\n");
+    ask("M4 M8 G20 G93", "ok");
+    settle();
+    ask("$G", "[GC:G80 G54 G18 G20 G91 G93 G64 M4 M7 M8 T3 F0 S500]\r\n");
+    ask("S0.5 M3", "ok");
+    settle();
+    ask("$G", " G64 M3 M7 M8 ");
+}
+
 static void test_homing_is_answered_when_the_axes_are_there(void)
 {
     ask("G0 X3 Y4", "ok");
@@ -428,6 +444,7 @@ int main(void)
     RUN_TEST(test_settings_are_read_and_only_those_of_reports_are_set);
     RUN_TEST(test_it_tells_what_it_has_been_built_with_in_the_letters_of_grbl);
     RUN_TEST(test_offsets_are_told_and_set_to_zero);
+    RUN_TEST(test_modes_are_told_word_by_word);
     RUN_TEST(test_homing_is_answered_when_the_axes_are_there);
     RUN_TEST(test_sleep_ends_by_a_reset);
     RUN_TEST(test_while_another_panel_has_control_the_sender_may_only_hold);

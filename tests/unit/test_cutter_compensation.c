@@ -308,6 +308,18 @@ static void test_travel_is_that_of_the_tool(void)
     expect_error(TAKT_ERROR_TRAVEL_EXCEEDED, 2, 520.0);
 }
 
+/* An arc that is the first move of all: right of its centre, where it does not go, travel ends. */
+static void test_travel_of_the_first_move_is_looked_at_from_where_the_machine_stands(void)
+{
+    reader_prepare(&reader);
+    reader.config.start.at[AXIS_X] = 498.0;
+    reader.config.start.at[AXIS_Y] = 54.0;
+    reader_text(&reader, "G41.1 D10\nG3 X462 I-18 J-24 F60\n");
+    takt_cutter_compensation_open(&offset, &reader.config);
+    (void)expect(MOVE_ARC_CCW, 465.0, 50.0, 0.0);
+    expect_end();
+}
+
 /* One error a contour: what is left of it is not looked at. */
 static void test_reading_goes_on_behind_a_faulty_contour(void)
 {
@@ -460,6 +472,7 @@ int main(void)
     RUN_TEST(test_an_entry_not_longer_than_the_radius_is_refused);
     RUN_TEST(test_an_arc_smaller_than_the_tool_is_refused_with_the_difference);
     RUN_TEST(test_travel_is_that_of_the_tool);
+    RUN_TEST(test_travel_of_the_first_move_is_looked_at_from_where_the_machine_stands);
     RUN_TEST(test_reading_goes_on_behind_a_faulty_contour);
     RUN_TEST(test_an_error_of_the_program_comes_after_the_moves_before_it);
     RUN_TEST(test_a_second_contour_may_follow_without_a_move_between);

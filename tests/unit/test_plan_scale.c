@@ -127,8 +127,24 @@ static void test_sums_over_the_longest_window_stay_within_64_bits(void)
         for (unsigned box = 0; box < takt_ramp_profile_boxes(profiles[i]); box++) {
             sum *= takt_ramp_profile_box_cycles(box, cycles);
         }
-        TEST_ASSERT_TRUE(sum / takt_scale_of_machine(&limits).linear < 9.3e18);
+        TEST_ASSERT_TRUE(sum / takt_scale_of_machine(&limits).linear < 9223372036854775808.0);
     }
+}
+
+/* One axis, and limits of powers of two, so that nothing is rounded. */
+static void test_a_sum_that_is_one_too_many_for_64_bits_takes_the_next_scale(void)
+{
+    const uint32_t cycles = takt_ramp_profile_cycles_max(RAMP_PROFILE_JERK);
+    const double sum = 0.5 * PATH_UNITS_PER_MM * (double)cycles * (double)cycles;
+
+    limits.axes = 1U << AXIS_X;
+    limits.cycle_s = 1.0 / 1024.0;
+    limits.velocity_mm_s[AXIS_X] = 9223372036854775808.0 / sum * 1024.0;
+    limits.acceleration_mm_s2[AXIS_X] = 1e9;
+    limits.jerk_mm_s3[AXIS_X] = 1e12;
+    TEST_ASSERT_EQUAL_DOUBLE(2.0, takt_scale_of_machine(&limits).linear);
+    limits.velocity_mm_s[AXIS_X] *= 1.0 - 1e-12;
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, takt_scale_of_machine(&limits).linear);
 }
 
 static void test_the_longest_way_fits_into_path_positions(void)
@@ -160,6 +176,7 @@ int main(void)
     RUN_TEST(test_nor_in_its_acceleration);
     RUN_TEST(test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones);
     RUN_TEST(test_sums_over_the_longest_window_stay_within_64_bits);
+    RUN_TEST(test_a_sum_that_is_one_too_many_for_64_bits_takes_the_next_scale);
     RUN_TEST(test_the_longest_way_fits_into_path_positions);
     RUN_TEST(test_what_is_far_slower_than_a_cycle_of_braking_is_come_to_at_rest);
     return UNITY_END();

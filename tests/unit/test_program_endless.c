@@ -80,6 +80,15 @@ static void test_after_an_error_each_line_is_read_once_more_at_most(void)
                            count_errors("G77\no1 if [\nG78\no1 elseif [1]\nG79\no1 endif\nG77\n"));
 }
 
+static void test_after_an_error_a_subroutine_is_gone_through_once_more(void)
+{
+    reader_open(&reader, "o1 sub\nG91 G0 X1\no1 endsub\nQ\no1 call\no1 call\nG90 G0 X5\n");
+    reader_expect_error(&reader, TAKT_ERROR_NUMBER_EXPECTED);
+    expect_x(1.0);
+    expect_x(5.0);
+    reader_expect_end(&reader);
+}
+
 static void test_a_search_in_vain_goes_on_behind_its_call(void)
 {
     reader_open(&reader, "o1 call\nG0 X1\no2 call\nG0 X2\n");
@@ -131,6 +140,7 @@ int main(void)
     RUN_TEST(test_a_program_that_runs_in_a_circle_without_a_move_is_stopped);
     RUN_TEST(test_a_stream_passes_over_text_but_never_goes_back);
     RUN_TEST(test_after_an_error_each_line_is_read_once_more_at_most);
+    RUN_TEST(test_after_an_error_a_subroutine_is_gone_through_once_more);
     RUN_TEST(test_a_search_in_vain_goes_on_behind_its_call);
     RUN_TEST(test_a_program_that_goes_back_to_its_beginning_is_read_for_long_enough);
     RUN_TEST(test_lines_are_not_read_again_more_often_than_the_host_lets_them);

@@ -48,6 +48,17 @@ static void test_m72_leaves_position_offsets_and_motion_alone(void)
     (void)reader_expect(&reader, MOVE_RAPID, 5.0, 0.0, 0.0);
 }
 
+static void test_m72_does_not_change_what_a_compensated_contour_stands_on(void)
+{
+    reader_expect_refused(&reader, "G18\nM70\nG17\nG41.1 D6\nM72\n", TAKT_ERROR_CUTTER_ON);
+    TEST_ASSERT_EQUAL_STRING("M72", reader.diagnostic.word);
+    TEST_ASSERT_EQUAL_UINT32(5, reader.diagnostic.line);
+    reader_expect_refused(&reader, "G55\nM70\nG54\nG41.1 D6\nM72\n", TAKT_ERROR_CUTTER_ON);
+    reader_expect_refused(&reader, "G43.1 Z1\nM70\nG49\nG41.1 D6\nM72\n", TAKT_ERROR_CUTTER_ON);
+    reader_open(&reader, "G91\nM70\nG90\nG41.1 D6\nM72\nM2\n");
+    reader_expect_end(&reader);
+}
+
 static void test_m72_needs_m70_of_the_same_call(void)
 {
     reader_open(&reader, "M72\n");
@@ -208,6 +219,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_m72_brings_all_saved_modes_back);
     RUN_TEST(test_m72_leaves_position_offsets_and_motion_alone);
+    RUN_TEST(test_m72_does_not_change_what_a_compensated_contour_stands_on);
     RUN_TEST(test_m72_needs_m70_of_the_same_call);
     RUN_TEST(test_m73_brings_modes_back_when_the_call_ends);
     RUN_TEST(test_m73_works_in_numbered_programs_and_does_nothing_in_the_main_one);

@@ -16,8 +16,12 @@
 #define SLOWER   1.35
 #define MORE     6.0
 
+/* One after another rests, as in replay. */
+static struct halt halt;
+
 void setUp(void)
 {
+    halt = (struct halt){0};
     random_rate_seed = 1;
 }
 
@@ -67,12 +71,10 @@ static double next_order(double to)
 static int drive_so(struct rate *r, const struct plan_limits *limits, double to, double way,
                     struct differences *d, bool restless)
 {
-    struct halt h = {0};
-
     for (int n = 1; n < CYCLES; n++) {
         const struct rate before = *r;
         to = restless ? next_order(to) : to;
-        const double here = takt_halt_step(&h, r, to, way);
+        const double here = takt_halt_step(&halt, r, to, way);
 
         TEST_ASSERT_TRUE(here >= 0.0 && here <= way);
         TEST_ASSERT_TRUE(verified(d, limits, here) <= 1.0);

@@ -63,7 +63,7 @@ static void test_braking_from_any_acceleration_is_that_of_the_motion_gone_in_ste
 {
     for (unsigned i = 0; i < 5; i++)
         for (unsigned k = 0; k < 4; k++)
-            for (int part = -1; part <= 1; part++) {
+            for (int part = -3; part <= 3; part++) {
                 const double j = grown(5e3, 3.7, i);
                 const double a = grown(100.0, 2.9, k);
                 const struct braking_limits l = {(float)a, (float)j};

@@ -284,6 +284,30 @@ static void test_the_way_out_is_in_the_groove_of_the_way_in(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, in, out);
 }
 
+/* A row of holes, each with a way between. */
+static void test_every_tap_of_a_row_goes_to_the_bottom_and_comes_back(void)
+{
+    double deepest[2] = {0.0};
+
+    bench_turn(&bench, 600);
+    bench_tap(&bench, -15.0, 1.25, 1.0);
+    bench_go(&bench, MOVE_RAPID, 10.0, 0.0, 0.0);
+    bench_tap(&bench, -12.0, 1.25, 1.0);
+    bench_go(&bench, MOVE_RAPID, 20.0, 0.0, 0.0);
+    bench_start(&bench);
+    while (bench_cycle(&bench)) {
+        double *z = &deepest[bench.point.at[AXIS_X] > 5.0 ? 1 : 0];
+
+        TEST_ASSERT_TRUE(bench.cycles < CYCLES_MAX);
+        *z = maths_min(*z, bench.point.at[AXIS_Z]);
+    }
+    TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
+    TEST_ASSERT_DOUBLE_WITHIN(0.06 * 1.25, -15.0, deepest[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.06 * 1.25, -12.0, deepest[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(20.0, bench.point.at[AXIS_X]);
+    bench_check_limits(&bench);
+}
+
 /* -- alarms -- */
 
 static void test_a_spindle_that_never_gets_to_its_speed_is_an_alarm(void)
@@ -394,6 +418,7 @@ int main(void)
     RUN_TEST(test_a_left_hand_tap_does_too);
     RUN_TEST(test_a_tap_may_come_out_faster);
     RUN_TEST(test_the_way_out_is_in_the_groove_of_the_way_in);
+    RUN_TEST(test_every_tap_of_a_row_goes_to_the_bottom_and_comes_back);
     RUN_TEST(test_a_spindle_that_never_gets_to_its_speed_is_an_alarm);
     RUN_TEST(test_a_pitch_and_speed_that_an_axis_cannot_do_are_an_alarm_before_anything_moves);
     RUN_TEST(test_a_thread_shorter_than_catching_up_is_an_alarm_before_anything_moves);
