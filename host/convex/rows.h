@@ -1,10 +1,10 @@
 /*
  * The rows of one cell: values, products with a step, and their part of the normal matrix.
  */
-#ifndef TAKT_HOST_AHEAD_ROWS_H
-#define TAKT_HOST_AHEAD_ROWS_H
+#ifndef TAKT_HOST_CONVEX_ROWS_H
+#define TAKT_HOST_CONVEX_ROWS_H
 
-#include "ahead/problem.h"
+#include "convex/problem.h"
 
 /* For a cell: both sides of every axis's limits, the feed, the balls, and both bounds of e. */
 #define ROWS_AXIS 0
@@ -13,7 +13,7 @@ enum { ROWS_FEED = 3 * FORM_COUNT * 2 };
 #define ROWS_TIME (ROWS_BALL + CELL_BALLS)
 #define CELL_ROWS (ROWS_TIME + 2)
 /* And the balls of stray tools, behind them. */
-#define ROWS_MAX (CELL_ROWS + MODES_STRAYS * STRAY_BALLS)
+#define ROWS_MAX (CELL_ROWS + PROBLEM_STRAYS * STRAY_BALLS)
 
 static inline int rows_count(const struct problem *p)
 {
@@ -24,23 +24,23 @@ static inline int rows_count(const struct problem *p)
 #define CELL_UNKNOWNS 16
 
 /*
- * Limits and bounds of time are on the motors' control points, the tolerance on the tool's: on a stiff machine both are the
+ * Limits and bounds of time are on the motors' control points, the tolerance on the tool's: without modes both are the
  * same, in one place, and so are what is added up below. The tool's e is not used.
  */
 struct rows_at {
     const double *motor, *tool; /* CELL_UNKNOWNS each */
-    const double *stray[MODES_STRAYS];
+    const double *stray[PROBLEM_STRAYS];
 };
 
 struct rows_sum {
     double *motor, *tool;
-    double *stray[MODES_STRAYS];
+    double *stray[PROBLEM_STRAYS];
 };
 
 struct rows_square {
     double (*motor)[CELL_UNKNOWNS];
     double (*tool)[CELL_UNKNOWNS];
-    double (*stray[MODES_STRAYS])[CELL_UNKNOWNS];
+    double (*stray[PROBLEM_STRAYS])[CELL_UNKNOWNS];
 };
 
 /* c(z) of every row: > 0 inside. Rows that do not apply are 1. */

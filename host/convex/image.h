@@ -1,24 +1,24 @@
 /*
- * A cell's rows (rows.h) in its unknowns x, changes of the curve w and of time. On a stiff machine these are what the rows
- * are on; else
+ * A cell's rows (rows.h) in its unknowns x, changes of the curve w and of time. Without modes these are what the
+ * rows are on; else
  *
- *     change of the motors' or the tool's point j = sum_k (by_curve_k dw_(j+k) + by_time_k e_(j+k)),   k = 0 ... 2 count
+ *     change of the motors' or the tool's point j = sum_k (by_curve_k dw_(j+k) + by_time_k e_(j+k)),   k = 0 ... 2 modes
  *
- * with the weights of modes.h.
+ * with the weights of struct problem_side.
  */
-#ifndef TAKT_HOST_AHEAD_IMAGE_H
-#define TAKT_HOST_AHEAD_IMAGE_H
+#ifndef TAKT_HOST_CONVEX_IMAGE_H
+#define TAKT_HOST_CONVEX_IMAGE_H
 
-#include "ahead/rows.h"
+#include "convex/rows.h"
 
-/* Unknowns of a cell with modes: four of each of 4 + 2 count control points. */
-#define IMAGE_UNKNOWNS ((4 + 3 * MODES_STRAYS) * (4 + 2 * MODES_MAX))
+/* Unknowns of a cell with modes: four of each of 4 + 2 modes control points. */
+#define IMAGE_UNKNOWNS ((4 + 3 * PROBLEM_STRAYS) * (4 + 2 * PROBLEM_MODES_MAX))
 
 /* What rows are on, of both sides. */
 struct image {
     double motor[CELL_UNKNOWNS];
     double tool[CELL_UNKNOWNS];
-    double stray[MODES_STRAYS][CELL_UNKNOWNS];
+    double stray[PROBLEM_STRAYS][CELL_UNKNOWNS];
 };
 
 /* Valid as long as x and image are. */

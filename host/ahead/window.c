@@ -1,8 +1,7 @@
-/* The problem of one section: rows for tolerance, corners, velocity, acceleration and jerk. */
-#include "ahead/problem.h"
+#include "ahead/window.h"
 
 #include "ahead/excess.h"
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 #include <string.h>
 
@@ -57,8 +56,8 @@ static void set_axis(const struct problem *p, struct problem_cell *cell, double 
 }
 
 /* |q' + d' + q' e / 2| <= F */
-static void set_feed(const struct problem_window *w, struct problem_cell *cell,
-                     double (*control)[3], double feed_mm_s)
+static void set_feed(const struct window *w, struct problem_cell *cell, double (*control)[3],
+                     double feed_mm_s)
 {
     const double limit = feed_mm_s * w->limits->step_s;
     double way[3];
@@ -91,7 +90,7 @@ static double bend_of(const struct ahead_limits *l, double (*control)[3])
 }
 
 /* By what setpoints in place of the motors' curve move the tool in interval k, at most. */
-static double lag_of(const struct problem_window *w, size_t k)
+static double lag_of(const struct window *w, size_t k)
 {
     double away[3];
 
@@ -104,8 +103,7 @@ static double lag_of(const struct problem_window *w, size_t k)
  * verified by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
  * would narrow the tolerance.
  */
-static double radius_of(const struct problem_window *w, const struct ahead_element *e, size_t k,
-                        double t)
+static double radius_of(const struct window *w, const struct ahead_element *e, size_t k, double t)
 {
     const double sag_mm = bend_of(w->limits, w->trail->tool + k) * t * t / 8 + lag_of(w, k);
     const double least_mm = LEAST_PART * e->tolerance_mm;
@@ -123,7 +121,7 @@ static bool is_beside(const struct problem_ball *ball)
 }
 
 /* Within reach of its closest point: the path may be left sideways only; a corner in no direction. */
-static void set_tube(const struct problem_window *w, struct problem_ball *ball, size_t k,
+static void set_tube(const struct window *w, struct problem_ball *ball, size_t k,
                      const double weight[4], double place_mm, size_t *hint)
 {
     const struct ahead_element *e;
@@ -142,8 +140,8 @@ static void set_tube(const struct problem_window *w, struct problem_ball *ball, 
 }
 
 /* A stray tool is wherever it has got to: its closest point of the path is no farther along the path than twice as far as it is from the tool. */
-static void set_stray_ball(const struct problem_window *w, struct problem_ball *ball, size_t s,
-                           size_t k, const double weight[4], double place_mm, size_t hint)
+static void set_stray_ball(const struct window *w, struct problem_ball *ball, size_t s, size_t k,
+                           const double weight[4], double place_mm, size_t hint)
 {
     const struct trail *t = w->trail;
     const struct ahead_element *e;
@@ -167,7 +165,7 @@ static void set_stray_ball(const struct problem_window *w, struct problem_ball *
 }
 
 /* The row about the second of three control points: weights of modes.h; time as problem.h has it, E and q both being curves. */
-static void set_swing(const struct problem_window *w, struct problem_swing *row, size_t s, size_t k,
+static void set_swing(const struct window *w, struct problem_swing *row, size_t s, size_t k,
                       int axis, const struct problem_side *motor)
 {
     const struct modes_stray *as = &w->limits->modes.stray[s][axis];
@@ -201,8 +199,8 @@ static void set_swing(const struct problem_window *w, struct problem_swing *row,
     row->by_time[0 + modes] -= scale * 0.25 * first;
 }
 
-static void set_strays(struct problem *p, const struct problem_window *w, size_t i,
-                       const double *place_mm, size_t hint)
+static void set_strays(struct problem *p, const struct window *w, size_t i, const double *place_mm,
+                       size_t hint)
 {
     for (size_t s = 0; s < p->strays; s++) {
         struct problem_stray *stray = &p->stray[i][s];
@@ -291,8 +289,8 @@ static struct problem_ball *free_ball(const struct problem *p, size_t cell, int 
 }
 
 /* The curve at u comes within reach of a junction; of a curved one sideways, so that it may still move along. */
-static void add_junction(struct problem *p, const struct problem_window *w,
-                         const struct ahead_element *e, const struct passer *by, double u)
+static void add_junction(struct problem *p, const struct window *w, const struct ahead_element *e,
+                         const struct passer *by, double u)
 {
     const size_t k = (size_t)u;
     struct problem_ball *ball;
@@ -313,8 +311,7 @@ static void add_junction(struct problem *p, const struct problem_window *w,
     ball->radius_mm = by->tolerances * radius_of(w, e, k, w->limits->cycle_s / w->limits->step_s);
 }
 
-static void pass_junctions(struct problem *p, const struct problem_window *w,
-                           const struct passer *by)
+static void pass_junctions(struct problem *p, const struct window *w, const struct passer *by)
 {
     const struct trail *t = w->trail;
     const size_t last = 2 * (w->first + p->cells);
@@ -337,7 +334,7 @@ static void pass_junctions(struct problem *p, const struct problem_window *w,
     }
 }
 
-static void set_junctions(struct problem *p, const struct problem_window *w)
+static void set_junctions(struct problem *p, const struct window *w)
 {
     pass_junctions(p, w, &(struct passer){w->trail->tool, 1, -1});
     for (int s = 0; s < (int)p->strays; s++)
@@ -377,7 +374,7 @@ static void set_map(struct problem_map *map, const struct ahead_modes *modes, do
     }
 }
 
-void problem_build(struct problem *p, const struct problem_window *w)
+void window_build(struct problem *p, const struct window *w)
 {
     size_t hint = 0;
 

@@ -1,8 +1,8 @@
-#include "ahead/interior.h"
+#include "convex/interior.h"
 
-#include "ahead/band.h"
-#include "ahead/image.h"
 #include "base/maths.h"
+#include "convex/band.h"
+#include "convex/image.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -61,9 +61,9 @@ struct interior {
     double swing_square;
 };
 
-struct interior *interior_new(size_t cells_max, const struct ahead_modes *modes)
+struct interior *interior_new(size_t cells_max, unsigned modes, unsigned strays)
 {
-    const struct problem as = {.modes = modes->count, .strays = modes->strays};
+    const struct problem as = {.modes = modes, .strays = strays};
     const size_t unknowns = problem_each(&as) * cells_max;
     struct interior *w = calloc(1, sizeof *w);
 
@@ -194,7 +194,7 @@ static double take_values(struct interior *w)
     return sum / (2.0 * w->rows * (double)p->cells);
 }
 
-/* The second difference about f - 1; e is 0 beyond the window's ends. */
+/* The second difference about f - 1; e is 0 beyond the curve's ends. */
 static void smooth_at(struct interior *w, size_t f)
 {
     static const double second[3] = {1, -2, 1};
@@ -442,7 +442,7 @@ double (*interior_solve(struct interior *w, const struct problem *p))[4]
     double radius_mm = MATHS_INFINITY;
 
     w->problem = p;
-    w->ends = trail_ends(p->modes);
+    w->ends = problem_ends(p);
     w->free = p->cells - w->ends;
     w->width = problem_unknowns(p);
     w->each = problem_each(p);

@@ -1,8 +1,7 @@
 /*
- * One step of the optimiser on a window of the trajectory: a convex problem in changes of its control points and of its
- * time.
+ * A convex problem in changes of a curve's control points and of its time.
  *
- * The window's curve is q(u), u in knots. Unknown are a change d(u) of the curve and y(u) = 1 + e(u), the square of the
+ * The curve is q(u), u in knots. Unknown are a change d(u) of the curve and y(u) = 1 + e(u), the square of the
  * rate at which it is passed, both cubic B-splines on the same knots; the first and last three coefficients are 0. Then
  * (warp of time, exact in e; products of d and e left out)
  *
@@ -15,19 +14,23 @@
  * change of time alone never leads beyond the limits. Every row may be broken at a price, so that there is a solution
  * from wherever the trajectory is.
  *
- * On a machine with modes the unknown is a change of the curve w that motors and tool follow from (modes.h): q + d is then
- * the motors' curve in the rows of velocity, acceleration and jerk, and the tool's in those of the tube, with d linear in
- * the changes of w and of time (image.h).
+ * The rows may also be on two images of the curve w that is changed, each with other weights: q + d is then that of the
+ * motors in the rows of velocity, acceleration and jerk, and that of the tool in those of the tube, with d linear in the
+ * changes of w and of time (image.h). An image's point j follows from the points j ... j + 2 modes of w. And a tool may
+ * stray: up to two more curves have balls of their own, and follow from the motors' by a row an axis (problem_swing).
  */
-#ifndef TAKT_HOST_AHEAD_PROBLEM_H
-#define TAKT_HOST_AHEAD_PROBLEM_H
-
-#include "ahead/limits.h"
-#include "ahead/path.h"
-#include "ahead/trail.h"
+#ifndef TAKT_HOST_CONVEX_PROBLEM_H
+#define TAKT_HOST_CONVEX_PROBLEM_H
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* Points of w that decide one of an image: 1 + 2 modes. */
+#define PROBLEM_MODES_MAX 2
+#define PROBLEM_REACH_MAX (1 + 2 * PROBLEM_MODES_MAX)
+
+/* Tools that stray, at most. */
+#define PROBLEM_STRAYS 2
 
 /* Derivatives that have limits. */
 enum problem_form { FORM_VELOCITY, FORM_ACCELERATION, FORM_JERK, FORM_COUNT };
@@ -54,20 +57,21 @@ struct problem_cell {
     struct problem_ball ball[CELL_BALLS];
 };
 
-/* How the four control points of motors or tool change with the curve's: point, axis, see struct modes_point. */
+/* How the four control points of motors or tool change with the curve's and with e's: point, axis, of which. */
 struct problem_side {
-    double by_curve[4][3][MODES_REACH_MAX];
-    double by_time[4][3][MODES_REACH_MAX];
+    double by_curve[4][3][PROBLEM_REACH_MAX];
+    double by_time[4][3][PROBLEM_REACH_MAX];
 };
 
-/* The row of one axis that says how a stray tool swings (modes.h): its sum over the unknowns is 0. */
+/* The row of one axis that says how a stray tool swings: its sum over the unknowns is 0. */
 struct problem_swing {
-    double by_own[3];                   /* of the first three of the cell's control points of it */
-    double by_curve[3 + 2 * MODES_MAX]; /* of control points of w, from the cell's first on */
-    double by_time[3 + 2 * MODES_MAX];
+    double by_own[3]; /* of the first three of the cell's control points of it */
+    double
+        by_curve[3 + 2 * PROBLEM_MODES_MAX]; /* of control points of w, from the cell's first on */
+    double by_time[3 + 2 * PROBLEM_MODES_MAX];
 };
 
-/* The tool of a machine with other modes: where it may be, and how it comes there. */
+/* A stray tool: where it may be, and how it comes there. */
 struct problem_stray {
     struct problem_ball ball[STRAY_BALLS];
     struct problem_swing swing[3];
@@ -78,27 +82,23 @@ struct problem_map {
 };
 
 struct problem {
-    size_t cells;              /* intervals of the window */
+    size_t cells;              /* intervals of the curve */
     struct problem_cell *cell; /* owned by the caller */
-    unsigned modes;            /* of an axis, at most */
+    unsigned modes;            /* 0: motors, tool and curve are the same */
     struct problem_map *map;   /* of every cell if there are modes; owned by the caller */
-    unsigned strays;           /* tools of machines of other modes */
+    unsigned strays;           /* tools that stray */
     struct problem_stray (
-        *stray)[MODES_STRAYS]; /* of every cell if there are any; owned by the caller */
-    size_t
-        rest; /* control points before the window's last ones that stay as well, but for stray tools */
+        *stray)[PROBLEM_STRAYS]; /* of every cell if there are any; owned by the caller */
+    size_t rest; /* control points before the last ones that stay as well, but for stray tools */
     double scale[3][FORM_COUNT]; /* 1 / limit, knots */
     bool timed;                  /* false: e = 0 */
 };
 
-/* A window: intervals from first on, of a trail along a path. */
-struct problem_window {
-    const struct ahead_path *path;
-    const struct ahead_limits *limits;
-    const struct trail *trail;
-    size_t first;
-    double inside; /* part of the tolerance that is used */
-};
+/* Control points at either end of w that stay. */
+static inline size_t problem_ends(const struct problem *p)
+{
+    return 3 + 2 * (size_t)p->modes;
+}
 
 /*
  * Unknowns of one control point: x, y, z of w, e, and x, y, z of each stray tool. What a tool does goes with points of w
@@ -114,8 +114,5 @@ static inline size_t problem_unknowns(const struct problem *p)
 {
     return problem_each(p) * (4 + 2 * (size_t)p->modes);
 }
-
-/* Sets the rows of p, for p->cells intervals; place_mm: of every half knot from 2 first on. */
-void problem_build(struct problem *p, const struct problem_window *w);
 
 #endif

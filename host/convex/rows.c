@@ -1,6 +1,6 @@
-#include "ahead/rows.h"
+#include "convex/rows.h"
 
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /*
  * A symmetric positive definite matrix with a band: factor and solve in linear time.
  */
-#ifndef TAKT_HOST_AHEAD_BAND_H
-#define TAKT_HOST_AHEAD_BAND_H
+#ifndef TAKT_HOST_CONVEX_BAND_H
+#define TAKT_HOST_CONVEX_BAND_H
 
 #include <stddef.h>
 

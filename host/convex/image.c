@@ -1,4 +1,4 @@
-#include "ahead/image.h"
+#include "convex/image.h"
 
 #include <string.h>
 
@@ -8,7 +8,7 @@ struct term {
     double weight;
 };
 
-#define TERMS_MAX (2 * MODES_REACH_MAX)
+#define TERMS_MAX (2 * PROBLEM_REACH_MAX)
 
 /* Coordinate `which` of point j as a sum of terms; their number is returned. Time is what it is at the point itself. */
 static size_t terms_of(const struct problem *p, const struct problem_side *side, size_t j,
@@ -157,7 +157,7 @@ void image_normal(const struct problem *p, size_t cell, const struct rows_at *z,
 {
     double motor[CELL_UNKNOWNS][CELL_UNKNOWNS] = {{0}};
     double tool[CELL_UNKNOWNS][CELL_UNKNOWNS];
-    double stray[MODES_STRAYS][CELL_UNKNOWNS][CELL_UNKNOWNS];
+    double stray[PROBLEM_STRAYS][CELL_UNKNOWNS][CELL_UNKNOWNS];
 
     if (p->modes == 0) {
         rows_normal(p, cell, z, w, m, &(struct rows_square){motor, motor, {NULL}});
@@ -174,7 +174,7 @@ void image_normal(const struct problem *p, size_t cell, const struct rows_at *z,
         square_stray(p, s, stray[s], k);
 }
 
-#define SWING_TERMS (3 + 2 * (3 + 2 * MODES_MAX))
+#define SWING_TERMS (3 + 2 * (3 + 2 * PROBLEM_MODES_MAX))
 
 static size_t swing_terms(const struct problem *p, size_t cell, size_t s, size_t axis,
                           struct term *term)

@@ -1,6 +1,6 @@
 /* Vectors of the three linear axes. */
-#ifndef TAKT_HOST_AHEAD_VECTOR_H
-#define TAKT_HOST_AHEAD_VECTOR_H
+#ifndef TAKT_HOST_CONVEX_VECTOR_H
+#define TAKT_HOST_CONVEX_VECTOR_H
 
 #include "base/maths.h"
 

@@ -1,4 +1,4 @@
-#include "ahead/band.h"
+#include "convex/band.h"
 
 /* Takes a column's part from the columns behind it; within: how many of them there are. */
 static void eliminate(double *column, size_t width, size_t within)
