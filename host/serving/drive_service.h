@@ -10,9 +10,9 @@
 #define TAKT_HOST_DRIVE_SERVICE_H
 
 #include "bus/frame_bits.h"
-#include "bus/link.h"
 #include "cli/status.h"
 #include "drives/virtual_drives.h"
+#include "link/link.h"
 #include "simulation/probe_contact.h"
 
 #include <stdbool.h>

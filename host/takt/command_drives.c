@@ -7,13 +7,13 @@
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "config/data_sheet.h"
-#include "config/inject_file.h"
 #include "config/machine_file.h"
-#include "config/probe_file.h"
 #include "serving/drive_service.h"
 #include "serving/serving_options.h"
 #include "serving/spindle_service.h"
 #include "simulation/drive_images.h"
+#include "tables/inject_file.h"
+#include "tables/probe_file.h"
 
 #include <poll.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 
 #include "bus/candump_read.h"
 #include "bus/hex.h"
-#include "bus/link.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/text.h"
+#include "link/link.h"
 
 #include <inttypes.h>
 #include <stdio.h>
