@@ -1,8 +1,8 @@
 #include "tables/tool_guess.h"
 
 #include "cli/message.h"
-#include "dialect/line.h"
 #include "program/program_limits.h"
+#include "words/line.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /*
  * A line of Siemens' language as it is read and written; values and words of it (siemens.c).
  */
-#ifndef TAKT_HOST_DIALECT_SIEMENS_H
-#define TAKT_HOST_DIALECT_SIEMENS_H
+#ifndef TAKT_HOST_SIEMENS_SCAN_H
+#define TAKT_HOST_SIEMENS_SCAN_H
 
-#include "dialect/translate.h"
+#include "translation/translator.h"
 
 #define NAME_MAX_ 32
 /* Of a cycle or a subprogram. */

@@ -1,4 +1,4 @@
-#include "dialect/line.h"
+#include "words/line.h"
 
 #include "base/decimal.h"
 

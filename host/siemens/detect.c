@@ -1,5 +1,6 @@
 /* What tells that a program is written in Siemens' language. */
-#include "dialect/siemens.h"
+#include "siemens/scan.h"
+#include "siemens/siemens.h"
 
 #include <ctype.h>
 #include <stdio.h>

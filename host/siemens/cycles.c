@@ -1,13 +1,13 @@
 /*
  * Drilling cycles of Siemens' language (siemens.c).
  */
-#include "dialect/siemens.h"
+#include "siemens/scan.h"
 
 #include <stdio.h>
 #include <string.h>
 
 /* Return height, reference, safety above it, depth, depth below the reference; then a dwell, or the first peck and the rest. */
-static void drill(struct scan *s, const char *name, char text[FLOW_CALL_MAX])
+static void drill(struct scan *s, const char *name, char text[TRANSLATE_CALL_MAX])
 {
     char a[SCAN_ARGUMENTS][48] = {{0}};
     const unsigned count = scan_arguments(s, a);
@@ -21,19 +21,19 @@ static void drill(struct scan *s, const char *name, char text[FLOW_CALL_MAX])
     if (a[2][0] == '\0')
         (void)snprintf(a[2], sizeof a[2], "0");
     const int at =
-        snprintf(text, FLOW_CALL_MAX, "G98 G%s R[%s+%s] Z[%s%s%s]",
+        snprintf(text, TRANSLATE_CALL_MAX, "G98 G%s R[%s+%s] Z[%s%s%s]",
                  strcmp(name, "CYCLE83") == 0   ? "83"
                  : strcmp(name, "CYCLE82") == 0 ? "82"
                                                 : "81",
                  a[1], a[2], relative ? a[1] : "", relative ? "-" : "", relative ? a[4] : a[3]);
 
     if (strcmp(name, "CYCLE82") == 0)
-        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " P[%s]", dwell);
+        (void)snprintf(text + at, TRANSLATE_CALL_MAX - (size_t)at, " P[%s]", dwell);
     /* pecks are as deep as the first one: an absolute depth, or one below the reference */
     if (strcmp(name, "CYCLE83") == 0 && a[5][0] != '\0')
-        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " Q[ABS[%s-%s]]", a[1], a[5]);
+        (void)snprintf(text + at, TRANSLATE_CALL_MAX - (size_t)at, " Q[ABS[%s-%s]]", a[1], a[5]);
     else if (strcmp(name, "CYCLE83") == 0)
-        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " Q[ABS[%s]]", a[6]);
+        (void)snprintf(text + at, TRANSLATE_CALL_MAX - (size_t)at, " Q[ABS[%s]]", a[6]);
     translate_add(&s->t->behind, "G0 Z%s", a[0]);
 }
 
@@ -48,7 +48,7 @@ bool siemens_cycle(struct scan *s, const char *name)
 {
     struct translator *t = s->t;
     char cycle[NAME_MAX_];
-    char text[FLOW_CALL_MAX];
+    char text[TRANSLATE_CALL_MAX];
     const bool modal = strcmp(name, "MCALL") == 0;
 
     if (modal && scan_is_end(s)) {

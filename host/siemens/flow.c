@@ -1,8 +1,9 @@
 /*
  * Flow, subprograms and orders of Siemens' language (siemens.c).
  */
-#include "dialect/output.h"
-#include "dialect/siemens.h"
+#include "siemens/scan.h"
+#include "siemens/siemens.h"
+#include "translation/jumps.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ static bool take_jump(struct scan *s, const char *name)
     clear(s->t);
     const bool numbered = target[0] == 'N' && scan_is_digit(target[1]);
 
-    flow_go_to(s->t, numbered ? (uint32_t)strtoul(target + 1, NULL, 10) : number_of(s->t, target));
+    jumps_go_to(s->t, numbered ? (uint32_t)strtoul(target + 1, NULL, 10) : number_of(s->t, target));
     return true;
 }
 
@@ -254,7 +255,7 @@ static void put_calls(struct scan *s, char *name, char argument[SCAN_ARGUMENTS][
                       unsigned arguments)
 {
     unsigned times = 1;
-    char text[FLOW_CALL_MAX];
+    char text[TRANSLATE_CALL_MAX];
     char count[NAME_MAX_];
     const char *before = s->at;
     size_t length;
@@ -398,12 +399,12 @@ static bool take_label(struct scan *s)
         return false;
     if (*s->at == ':' && s->at[1] != '=') {
         s->at++;
-        flow_label(s->t, number_of(s->t, name));
+        jumps_add_label(s->t, number_of(s->t, name));
         return true;
     }
     if (name[0] == 'N' && scan_is_digit(name[1]) &&
         strspn(name + 1, "0123456789") == strlen(name + 1)) {
-        flow_label(s->t, (uint32_t)strtoul(name + 1, NULL, 10));
+        jumps_add_label(s->t, (uint32_t)strtoul(name + 1, NULL, 10));
         return true;
     }
     s->at = before;

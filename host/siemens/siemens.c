@@ -1,5 +1,5 @@
 /*
- * The language of Siemens' controllers, before the table of differences, its values and words; flow and orders are in siemens_flow.c, cycles in siemens_cycles.c: what it says in words and brackets.
+ * The language of Siemens' controllers, before the table of differences, its values and words; flow and orders are in flow.c, cycles in cycles.c: what it says in words and brackets.
  *
  *     X=R1+2*(R2-1) CR=5 TURN=2       X[#101+2*[#102-1]] R5 P3
  *     R1=5 R2=R1*2                    #101=5, #102=[#101*2]
@@ -11,7 +11,7 @@
  *
  * A parameter R5 is #105.
  */
-#include "dialect/siemens.h"
+#include "siemens/scan.h"
 
 #include <ctype.h>
 #include <stdarg.h>

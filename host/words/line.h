@@ -1,8 +1,8 @@
 /*
  * A line in pieces, as far as they can be told apart without knowing what they mean.
  */
-#ifndef TAKT_HOST_DIALECT_LINE_H
-#define TAKT_HOST_DIALECT_LINE_H
+#ifndef TAKT_HOST_WORDS_LINE_H
+#define TAKT_HOST_WORDS_LINE_H
 
 #include <stdbool.h>
 #include <stddef.h>

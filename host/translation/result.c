@@ -1,4 +1,4 @@
-#include "dialect/output.h"
+#include "translation/result.h"
 
 #include <stdarg.h>
 #include <stdio.h>
