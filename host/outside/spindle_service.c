@@ -1,4 +1,4 @@
-#include "serving/spindle_service.h"
+#include "outside/spindle_service.h"
 
 #include "cli/message.h"
 #include "cli/stopwatch.h"

@@ -1,6 +1,6 @@
 #define _POSIX_C_SOURCE 200809L
 
-#include "serving/drive_service.h"
+#include "outside/drive_service.h"
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
