@@ -223,10 +223,9 @@ static enum command_status send_to_bus(struct bus_replay *replay)
 
 enum command_status bus_replay_run(const struct options *options)
 {
-    static struct bus_replay replay;
+    struct bus_replay replay = {.options = options};
     enum command_status status = STATUS_INPUT;
 
-    replay.options = options;
     if (!read_ids(&replay) || !text_read(&replay.log, options->operand[0]))
         return STATUS_INPUT;
     if (check_log(&replay))
