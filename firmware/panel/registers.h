@@ -2,8 +2,8 @@
  * The operator's panel as a table: every register once, with number, name, unit, scale, access and the states in which it
  * may be written. The server, its documentation (registers.md, registers.csv) and `takt panel` all read it.
  *
- * To add a register: a row in PANEL_REGISTERS, in the order of table and address; then `takt panel table` writes the
- * documentation again.
+ * To add a register: a row in PANEL_REGISTERS, in the order of table and address, and if it is set a line in
+ * service/service_state.h; then `takt panel table` writes the documentation again.
  */
 #ifndef TAKT_PANEL_REGISTERS_H
 #define TAKT_PANEL_REGISTERS_H

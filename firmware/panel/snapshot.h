@@ -23,8 +23,12 @@ static inline int64_t panel_value(const struct panel_snapshot *snapshot, enum pa
     return takt_panel_registers[id].form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
 }
 
-/* More than one request can write: registers of a table that are an order, by the test of the room. */
-#define PANEL_ORDER_MAX 49
+/* As much as one request can write: the holding registers, of which there are more than coils. */
+#define PANEL_HOLDING_ID(id, table, address, form, words, unit, decimals, least, most, states,     \
+                         meaning)                                                                  \
+    PANEL_HOLDING_##id,
+enum panel_holding { PANEL_HOLDING_ROWS(PANEL_HOLDING_ID) PANEL_ORDER_MAX };
+#undef PANEL_HOLDING_ID
 
 /* What MDI_START starts. */
 enum panel_order_text {

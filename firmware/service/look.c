@@ -176,7 +176,6 @@ static void look_at_outputs(const struct service *s, uint32_t *value)
     value[REGISTER_COOLANT] = (outputs.mist ? 1 : 0) | (outputs.flood ? 2 : 0);
     value[REGISTER_FLOOD] = outputs.flood;
     value[REGISTER_MIST] = outputs.mist;
-    value[REGISTER_SPINDLE_STOP] = s->settings.spindle_stop;
     value[REGISTER_DIGITAL_OUTPUTS] = outputs.digital;
 }
 
@@ -214,26 +213,17 @@ static void look_at_state(const struct service *s, uint32_t *value)
     value[REGISTER_HOME] = s->job == SERVICE_HOME;
 }
 
+/* Of a table in service_state.h. */
+#define LOOK_AT_FIELD(id, field, type, initial) value[REGISTER_##id] = (uint32_t)settings->field;
+
 static void look_at_settings(const struct service *s, uint32_t *value)
 {
     const struct service_settings *settings = &s->settings;
 
-    value[REGISTER_SINGLE_BLOCK] = settings->single_block;
-    value[REGISTER_OPTIONAL_STOP] = settings->optional_stop;
-    value[REGISTER_BLOCK_DELETE] = settings->block_delete;
+    SERVICE_SETTINGS(LOOK_AT_FIELD)
+    SERVICE_SWITCHES(LOOK_AT_FIELD)
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++)
         value[REGISTER_CORRECTION_MATRIX + i] = settings->corrections >> i & 1U;
-    value[REGISTER_FEED_OVERRIDE] = settings->feed_override;
-    value[REGISTER_RAPID_OVERRIDE] = settings->rapid_override;
-    value[REGISTER_SPINDLE_OVERRIDE] = settings->spindle_override;
-    value[REGISTER_MODE] = settings->mode;
-    value[REGISTER_JOG_AXIS] = settings->jog_axis;
-    value[REGISTER_JOG_FEED] = settings->jog_feed_mm_min;
-    value[REGISTER_JOG_DISTANCE] = (uint32_t)settings->jog_distance;
-    value[REGISTER_WORK_SYSTEM] = settings->work_system;
-    value[REGISTER_TOOL_SELECT] = settings->tool_select;
-    value[REGISTER_WATCHDOG] = settings->watchdog_ms;
-    value[REGISTER_START_LINE] = settings->start_line;
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value[REGISTER_RISE_X + i] = (uint32_t)settings->rise[i];
 }

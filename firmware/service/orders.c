@@ -196,30 +196,33 @@ static void switch_correction(struct service *s, unsigned layer, bool on)
                            (enum correction_layer_number)layer, on);
 }
 
+/* Of a table in service_state.h: the register is a field, which becomes the value. */
+#define SET_FIELD(register_id, field, type, initial)                                               \
+    if (id == REGISTER_##register_id) {                                                            \
+        settings->field = (type)value;                                                             \
+        return true;                                                                               \
+    }
+
+/* Coils that are mere settings. False: it is none of them. */
+static bool set_field(struct service_settings *settings, enum panel_id id, bool value)
+{
+    SERVICE_SWITCHES(SET_FIELD)
+    return false;
+}
+
 /* Coils that stay as they are written. False: it is none of them. */
 static bool set_switch(struct service *s, enum panel_id id, bool on)
 {
-    struct service_settings *settings = &s->settings;
-
-    if (id == REGISTER_SINGLE_BLOCK) {
-        settings->single_block = on;
-    } else if (id == REGISTER_OPTIONAL_STOP) {
-        settings->optional_stop = on;
-    } else if (id == REGISTER_BLOCK_DELETE) {
-        settings->block_delete = on;
-    } else if (id == REGISTER_EMERGENCY_STOP) {
+    if (id == REGISTER_EMERGENCY_STOP)
         set_emergency(s, on);
-    } else if (is_between(id, REGISTER_FLOOD, REGISTER_MIST)) {
+    else if (is_between(id, REGISTER_FLOOD, REGISTER_MIST))
         takt_controller_set_coolant(&s->controller, id == REGISTER_FLOOD, on);
-    } else if (id == REGISTER_SPINDLE_STOP) {
-        settings->spindle_stop = on;
-    } else if (is_between(id, REGISTER_CORRECTION_MATRIX, REGISTER_CORRECTION_WEAR)) {
+    else if (is_between(id, REGISTER_CORRECTION_MATRIX, REGISTER_CORRECTION_WEAR))
         switch_correction(s, id - REGISTER_CORRECTION_MATRIX, on);
-    } else if (is_between(id, REGISTER_JOG_PLUS, REGISTER_JOG_MINUS)) {
+    else if (is_between(id, REGISTER_JOG_PLUS, REGISTER_JOG_MINUS))
         jog(s, id == REGISTER_JOG_MINUS, on);
-    } else {
-        return false;
-    }
+    else
+        return set_field(&s->settings, id, on);
     return true;
 }
 
@@ -311,32 +314,10 @@ static void set_setup(struct service_settings *settings, unsigned which, int64_t
 /* Holding registers that are mere settings. False: it is none of them. */
 static bool set_setting(struct service_settings *settings, enum panel_id id, int64_t value)
 {
-    if (id == REGISTER_FEED_OVERRIDE)
-        settings->feed_override = (uint16_t)value;
-    else if (id == REGISTER_RAPID_OVERRIDE)
-        settings->rapid_override = (uint16_t)value;
-    else if (id == REGISTER_SPINDLE_OVERRIDE)
-        settings->spindle_override = (uint16_t)value;
-    else if (id == REGISTER_MODE)
-        settings->mode = (enum panel_mode)value;
-    else if (id == REGISTER_JOG_AXIS)
-        settings->jog_axis = (enum axis)value;
-    else if (id == REGISTER_JOG_FEED)
-        settings->jog_feed_mm_min = (uint16_t)value;
-    else if (id == REGISTER_JOG_DISTANCE)
-        settings->jog_distance = (int32_t)value;
-    else if (id == REGISTER_WORK_SYSTEM)
-        settings->work_system = (unsigned)value;
-    else if (id == REGISTER_TOOL_SELECT)
-        settings->tool_select = (uint32_t)value;
-    else if (id == REGISTER_START_LINE)
-        settings->start_line = (uint32_t)value;
-    else if (id == REGISTER_WATCHDOG)
-        settings->watchdog_ms = (uint32_t)value;
-    else if (is_between(id, REGISTER_SETUP_X, REGISTER_SETUP_TABLE))
-        set_setup(settings, id - REGISTER_SETUP_X, value);
-    else
+    SERVICE_SETTINGS(SET_FIELD)
+    if (!is_between(id, REGISTER_SETUP_X, REGISTER_SETUP_TABLE))
         return false;
+    set_setup(settings, id - REGISTER_SETUP_X, value);
     return true;
 }
 

@@ -42,6 +42,9 @@ void takt_service_recover(struct service *s, bool home)
     takt_controller_recover(&s->controller, &config, home);
 }
 
+/* Of a table in service_state.h. */
+#define INITIAL(id, field, type, initial) .field = (initial),
+
 void takt_service_init(struct service *s, const struct service_config *config)
 {
     struct controller_config controller;
@@ -49,14 +52,9 @@ void takt_service_init(struct service *s, const struct service_config *config)
     memset(s, 0, sizeof *s);
     s->config = *config;
     s->tools = (struct tool_table){config->tools, config->tools_count};
-    s->settings = (struct service_settings){
-        .feed_override = 1000,
-        .rapid_override = 1000,
-        .spindle_override = 1000,
-        .jog_feed_mm_min = 1000,
-        .work_system = 1,
-        .corrections = CORRECTION_ALL_LAYERS & ~config->machine->correction.off,
-    };
+    s->settings = (struct service_settings){.corrections = CORRECTION_ALL_LAYERS &
+                                                           ~config->machine->correction.off,
+                                            SERVICE_SETTINGS(INITIAL) SERVICE_SWITCHES(INITIAL)};
     s->digest = FNV_START;
     controller = takt_service_controller_config(s);
     controller.machine = config->machine;

@@ -11,19 +11,35 @@
 /* Longest program the service writes itself: MDI lines, jogs, homing. */
 #define SERVICE_TEXT_MAX PANEL_MDI_MAX
 
-/* What the panel sets and reads back. */
+/*
+ * What the panel sets and reads back, one line each: SETTING(register, field, type, at first), in counts of
+ * the register. Orders and snapshots go by this table (orders.c, look.c).
+ */
+#define SERVICE_SETTINGS(SETTING)                                                                  \
+    SETTING(FEED_OVERRIDE, feed_override, uint16_t, 1000)                                          \
+    SETTING(RAPID_OVERRIDE, rapid_override, uint16_t, 1000)                                        \
+    SETTING(SPINDLE_OVERRIDE, spindle_override, uint16_t, 1000)                                    \
+    SETTING(MODE, mode, enum panel_mode, PANEL_MODE_PROGRAM)                                       \
+    SETTING(JOG_AXIS, jog_axis, enum axis, AXIS_X)                                                 \
+    SETTING(JOG_FEED, jog_feed_mm_min, uint16_t, 1000)                                             \
+    SETTING(JOG_DISTANCE, jog_distance, int32_t, 0)                                                \
+    SETTING(WORK_SYSTEM, work_system, unsigned, 1)                                                 \
+    SETTING(TOOL_SELECT, tool_select, uint32_t, 0)                                                 \
+    SETTING(WATCHDOG, watchdog_ms, uint32_t, 0)                                                    \
+    SETTING(START_LINE, start_line, uint32_t, 0)
+
+/* The same of coils. */
+#define SERVICE_SWITCHES(SWITCH)                                                                   \
+    SWITCH(SINGLE_BLOCK, single_block, bool, false)                                                \
+    SWITCH(OPTIONAL_STOP, optional_stop, bool, false)                                              \
+    SWITCH(BLOCK_DELETE, block_delete, bool, false)                                                \
+    SWITCH(SPINDLE_STOP, spindle_stop, bool, false)
+
+#define SERVICE_FIELD(id, field, type, initial) type field;
+
 struct service_settings {
-    uint16_t feed_override, rapid_override, spindle_override; /* 0.1 % */
-    enum panel_mode mode;
-    enum axis jog_axis;
-    uint16_t jog_feed_mm_min; /* deg/min for rotary axes */
-    int32_t jog_distance;     /* 0.001 mm or deg; 0: until released */
-    unsigned work_system;     /* 1 ... 9 */
-    uint32_t tool_select;
-    uint32_t watchdog_ms; /* 0: no panel is in control */
-    uint32_t start_line;  /* of the next program; 0: its beginning */
-    bool single_block, optional_stop, block_delete;
-    bool spindle_stop;                      /* in a hold */
+    SERVICE_SETTINGS(SERVICE_FIELD)
+    SERVICE_SWITCHES(SERVICE_FIELD)
     unsigned corrections;                   /* bit i: layer i of the position correction is on */
     int32_t rise[AXIS_COUNT];               /* 0.001 K, of each axis since calibration */
     int32_t setup[CORRECTION_SETUP_VALUES]; /* of the part, to be taken: 0.0001 mm or degrees */

@@ -2,9 +2,9 @@
 
 #include "ahead/exact.h"
 #include "ahead/guess.h"
-#include "ahead/vector.h"
 #include "base/fnv.h"
 #include "base/maths.h"
+#include "convex/vector.h"
 #include "replay/replay.h"
 
 #include <string.h>

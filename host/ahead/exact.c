@@ -1,7 +1,7 @@
 #include "ahead/exact.h"
 
-#include "ahead/vector.h"
 #include "base/maths.h"
+#include "convex/vector.h"
 #include "motion/motion.h"
 
 #include <stdlib.h>

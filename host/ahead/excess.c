@@ -1,6 +1,6 @@
 #include "ahead/excess.h"
 
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 /* What rounding and the solver's last step may leave above the limits the optimiser is given. */
 #define LIMIT_SLACK 3e-4
@@ -41,7 +41,7 @@ static double feed_of(const struct ahead_limits *l, double (*c)[3], double feed_
 }
 
 /* The distance from the path at some places of an interval, over the tolerance. */
-static double distance_of(const struct problem_window *w, size_t interval, size_t *hint)
+static double distance_of(const struct window *w, size_t interval, size_t *hint)
 {
     const struct trail *t = w->trail;
     const double from_mm = t->place_mm[2 * interval];
@@ -90,7 +90,7 @@ static double strays_of(const struct problem *p, size_t i)
     return most * STRAY_PART;
 }
 
-double excess_measure(const struct problem_window *w, const struct problem *p)
+double excess_measure(const struct window *w, const struct problem *p)
 {
     size_t hint = ahead_path_find(w->path, w->trail->place_mm[2 * w->first], 0);
     double most = 0;

@@ -4,7 +4,7 @@
 #ifndef TAKT_HOST_AHEAD_EXCESS_H
 #define TAKT_HOST_AHEAD_EXCESS_H
 
-#include "ahead/problem.h"
+#include "ahead/window.h"
 
 /* The part of the tolerance that counts as kept at the places that are measured. */
 #define EXCESS_TOLERANCE_PART 0.985
@@ -16,6 +16,6 @@
  * p: the problem built for the window. Sets the trail's beyond of every interval of the window: the largest of velocity,
  * acceleration, jerk and feed over its limit and of the distance over its tolerance; <= 1: legal. Returns the largest.
  */
-double excess_measure(const struct problem_window *w, const struct problem *p);
+double excess_measure(const struct window *w, const struct problem *p);
 
 #endif

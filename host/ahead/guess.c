@@ -1,6 +1,6 @@
 #include "ahead/guess.h"
 
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 #include <stdlib.h>
 

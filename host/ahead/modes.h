@@ -22,14 +22,16 @@
 #ifndef TAKT_HOST_AHEAD_MODES_H
 #define TAKT_HOST_AHEAD_MODES_H
 
+#include "convex/problem.h"
 #include "vibration/vibration.h"
 
 #include <stddef.h>
 
-#define MODES_MAX VIBRATION_MODES
+#define MODES_MAX PROBLEM_MODES_MAX
+_Static_assert(VIBRATION_MODES <= MODES_MAX, "every mode of an axis is planned for");
 
 /* Control points of w, around one of the motor's, that decide it. */
-#define MODES_REACH_MAX (1 + 2 * MODES_MAX)
+#define MODES_REACH_MAX PROBLEM_REACH_MAX
 
 struct modes_stage {
     double slope, bend;
@@ -37,7 +39,7 @@ struct modes_stage {
 };
 
 /* Machines whose modes are slower or faster than planned for, as far as they may be. */
-#define MODES_STRAYS 2
+#define MODES_STRAYS PROBLEM_STRAYS
 
 /*
  * How such a machine's tool swings about the motors' control points q: with u = q + E its own,

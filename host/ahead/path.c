@@ -1,7 +1,7 @@
 #include "ahead/path.h"
 
-#include "ahead/vector.h"
 #include "base/maths.h"
+#include "convex/vector.h"
 
 #include <stdlib.h>
 

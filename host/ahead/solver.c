@@ -2,9 +2,9 @@
 
 #include "ahead/crew.h"
 #include "ahead/excess.h"
-#include "ahead/interior.h"
 #include "ahead/warp.h"
 #include "base/maths.h"
+#include "convex/interior.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -79,7 +79,7 @@ struct solver {
 
 static bool bench_allocate(struct bench *b, const struct ahead_modes *modes)
 {
-    b->interior = interior_new(WINDOW_MAX, modes);
+    b->interior = interior_new(WINDOW_MAX, modes->count, modes->strays);
     b->problem.cell = calloc(WINDOW_MAX, sizeof *b->problem.cell);
     b->problem.map = modes->count > 0 ? calloc(WINDOW_MAX, sizeof *b->problem.map) : NULL;
     b->problem.stray = modes->strays > 0 ? calloc(WINDOW_MAX, sizeof *b->problem.stray) : NULL;
@@ -130,12 +130,12 @@ double solver_stuck_mm(const struct solver *s)
 }
 
 /* One step on the whole of a piece. */
-static bool step(struct bench *b, const struct problem_window *w, size_t cells, bool timed,
+static bool step(struct bench *b, const struct window *w, size_t cells, bool timed,
                  struct trail *result)
 {
     b->problem.cells = cells;
     b->problem.timed = timed;
-    problem_build(&b->problem, w);
+    window_build(&b->problem, w);
     return warp_window(w, cells, interior_solve(b->interior, &b->problem), timed, result);
 }
 
@@ -153,10 +153,10 @@ static bool copy_piece(const struct solver *s, size_t first, size_t intervals, s
     return true;
 }
 
-static double measure(struct bench *b, const struct problem_window *w)
+static double measure(struct bench *b, const struct window *w)
 {
     b->problem.cells = w->trail->intervals;
-    problem_build(&b->problem, w);
+    window_build(&b->problem, w);
     return excess_measure(w, &b->problem);
 }
 
@@ -198,7 +198,7 @@ static void slow_down(const struct solver *s, struct bench *b, const struct trai
 /* Replaces a piece by what a change of time makes of it. */
 static bool replace_slower(const struct solver *s, struct bench *b, struct trail *piece)
 {
-    const struct problem_window w = {s->path, s->limits, piece, 0, INSIDE};
+    const struct window w = {s->path, s->limits, piece, 0, INSIDE};
     struct trail slower;
 
     (void)measure(b, &w);
@@ -213,7 +213,7 @@ static bool replace_slower(const struct solver *s, struct bench *b, struct trail
 /* Changes of the curve alone, as long as they help. */
 static bool polish(const struct solver *s, struct bench *b, struct trail *piece)
 {
-    struct problem_window w = {s->path, s->limits, piece, 0, INSIDE};
+    struct window w = {s->path, s->limits, piece, 0, INSIDE};
     double beyond = measure(b, &w);
 
     for (int i = 0; i < POLISH_STEPS && beyond > 1; i++) {
@@ -250,7 +250,7 @@ static bool do_job(void *context, unsigned worker, size_t piece)
 {
     struct solver *s = context;
     struct job *job = &s->job[piece];
-    const struct problem_window w = {s->path, s->limits, s->trail, job->first, INSIDE};
+    const struct window w = {s->path, s->limits, s->trail, job->first, INSIDE};
     bool done;
 
     if (worker == 0 && s->progress != NULL &&
@@ -344,12 +344,12 @@ static double measure_all(struct solver *s)
     double worst = 0;
 
     for (size_t first = 0; first < s->trail->intervals; first += WINDOW) {
-        const struct problem_window w = {s->path, s->limits, s->trail, first, INSIDE};
+        const struct window w = {s->path, s->limits, s->trail, first, INSIDE};
         struct problem *p = &s->bench[0].problem;
         const size_t left = s->trail->intervals - first;
 
         p->cells = left < WINDOW ? left : WINDOW;
-        problem_build(p, &w);
+        window_build(p, &w);
         worst = maths_max(worst, excess_measure(&w, p));
     }
     return worst;

@@ -1,6 +1,6 @@
 #include "ahead/trail.h"
 
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "ahead/warp.h"
 
-#include "ahead/band.h"
-#include "ahead/vector.h"
+#include "convex/band.h"
+#include "convex/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 #define REACH_MAX_MM 0.5
 
 struct warp {
-    const struct problem_window *w;
+    const struct window *w;
     size_t cells;
     unsigned modes;
     size_t ends;          /* control points that stay */
@@ -300,7 +300,7 @@ static bool take_warped(struct warp *a, struct trail *t)
     return done;
 }
 
-bool warp_window(const struct problem_window *w, size_t cells, double (*change)[4], bool timed,
+bool warp_window(const struct window *w, size_t cells, double (*change)[4], bool timed,
                  struct trail *result)
 {
     struct warp a = {

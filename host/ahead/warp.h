@@ -5,13 +5,13 @@
 #ifndef TAKT_HOST_AHEAD_WARP_H
 #define TAKT_HOST_AHEAD_WARP_H
 
-#include "ahead/problem.h"
+#include "ahead/window.h"
 
 /*
  * change: (d, e) of the window's control points trail_ends ... cells - 1. The first and last ones, so many, stay. The
  * new time is lengthened to a whole number of knots. False: out of memory. The caller frees result.
  */
-bool warp_window(const struct problem_window *w, size_t cells, double (*change)[4], bool timed,
+bool warp_window(const struct window *w, size_t cells, double (*change)[4], bool timed,
                  struct trail *result);
 
 #endif

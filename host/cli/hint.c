@@ -1,7 +1,7 @@
 #include "cli/hint.h"
 
-#include "dialect/dialect.h"
-#include "dialect/line.h"
+#include "translation/codes.h"
+#include "words/line.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -7,11 +7,11 @@
 #include "bus/frame_bits.h"
 #include "config/chain_text.h"
 #include "deviation/deviation.h"
-#include "dialect/dialect.h"
 #include "drives/drive_plant.h"
 #include "machine/machine.h"
 #include "spindle/virtual_spindle.h"
 #include "stepper/virtual_steppers.h"
+#include "translation/codes.h"
 #include "vibration/vibration.h"
 
 #include <stdbool.h>

@@ -5,8 +5,9 @@
  */
 #include "dialect/dialect.h"
 #include "dialect/difference.h"
-#include "dialect/line.h"
 #include "dialect/translate.h"
+#include "siemens/siemens.h"
+#include "words/line.h"
 
 #include <math.h>
 #include <string.h>

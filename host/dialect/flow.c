@@ -9,7 +9,7 @@
  */
 #include "dialect/translate.h"
 
-#include "dialect/output.h"
+#include "translation/jumps.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -87,31 +87,7 @@ static void copy(const struct line *l, const struct line_word *w, char *text, si
     (void)snprintf(text, size, "%.*s", (int)(w->end - w->begin), &l->text[w->begin]);
 }
 
-/* ---- jumps ---- */
-
-void flow_note_label(struct translator *t, size_t offset)
-{
-    const struct line_word *w = t->line.words > 0 ? &t->line.word[0] : NULL;
-
-    t->line_offset = offset;
-    if (t->survey.jumps && w != NULL && w->letter == 'n' && w->is_number)
-        flow_label(t, line_whole(w->value));
-}
-
-void flow_label(struct translator *t, uint32_t number)
-{
-    if (t->labels == t->label_room) {
-        const size_t room = 2 * t->label_room + 256;
-        struct label *grown = realloc(t->label, room * sizeof *grown);
-
-        t->result->text.failed = t->result->text.failed || grown == NULL;
-        if (grown == NULL)
-            return;
-        t->label = grown;
-        t->label_room = room;
-    }
-    t->label[t->labels++] = (struct label){t->program, number, t->number, t->line_offset, t->depth};
-}
+/* ---- loops and branches ---- */
 
 /* The number behind GOTO is a word without a letter: digits among what is left of the line. */
 static bool read_target(const struct line *l, const struct line_word *w, uint32_t *number)
@@ -122,46 +98,6 @@ static bool read_target(const struct line *l, const struct line_word *w, uint32_
     *number = (uint32_t)strtoul(begin, &end, 10);
     return end != begin;
 }
-
-/* Where it is filled in is a place in behind, until the line is put out. */
-void flow_go_to(struct translator *t, uint32_t number)
-{
-    if (t->jumps < TRANSLATE_JUMPS_MAX)
-        t->jump[t->jumps++] =
-            (struct jump){t->program, number, t->number, t->behind.length + 1, t->depth};
-    translate_add(&t->behind, "o00000000 goto [00000000] [00]");
-}
-
-static const struct label *find_label(const struct translator *t, const struct jump *j)
-{
-    for (unsigned i = 0; i < t->labels; i++) {
-        if (t->label[i].program == j->program && t->label[i].number == j->number)
-            return &t->label[i];
-    }
-    return NULL;
-}
-
-bool flow_finish(struct translator *t)
-{
-    for (unsigned i = 0; i < t->jumps; i++) {
-        const struct jump *j = &t->jump[i];
-        const struct label *label = find_label(t, j);
-        char text[64];
-
-        if (label == NULL || label->depth > j->depth || label->offset > 99999999U) {
-            t->result->wrong_line = j->line;
-            t->result->wrong_number = j->number;
-            return false;
-        }
-        const int length = snprintf(text, sizeof text, "o%08u goto [%08u] [%02u]",
-                                    (unsigned)label->offset, (unsigned)label->line, label->depth);
-
-        memcpy(t->result->text.bytes + j->patch, text, (size_t)length);
-    }
-    return true;
-}
-
-/* ---- loops and branches ---- */
 
 static void take_while(struct translator *t, unsigned at)
 {
@@ -199,7 +135,7 @@ static void take_goto(struct translator *t, unsigned at)
     if (!read_target(&t->line, &t->line.word[at], &number))
         return;
     line_read(&t->line, "", 0);
-    flow_go_to(t, number);
+    jumps_go_to(t, number);
 }
 
 static void take_alarm(struct translator *t);
@@ -268,12 +204,14 @@ static unsigned argument_of(char letter)
     return at != NULL && letter != '.' ? (unsigned)(at - letters) + 1 : 0;
 }
 
-static void write_call(char text[FLOW_CALL_MAX], uint32_t program, char arguments[ARGUMENTS][48])
+static void write_call(char text[TRANSLATE_CALL_MAX], uint32_t program,
+                       char arguments[ARGUMENTS][48])
 {
-    size_t length = (size_t)snprintf(text, FLOW_CALL_MAX, "o%u call", (unsigned)program);
+    size_t length = (size_t)snprintf(text, TRANSLATE_CALL_MAX, "o%u call", (unsigned)program);
 
     for (unsigned i = 0; i < ARGUMENTS; i++)
-        length += (size_t)snprintf(text + length, FLOW_CALL_MAX - length, " [%s]", arguments[i]);
+        length +=
+            (size_t)snprintf(text + length, TRANSLATE_CALL_MAX - length, " [%s]", arguments[i]);
 }
 
 /* A to Z of the line; what is not given is 0. */
@@ -298,7 +236,7 @@ static void take_macro_call(struct translator *t)
     const struct line_word *p = line_find(l, 'p', 0);
     const bool once = line_find_code(l, 'g', 650) != NULL;
     char arguments[ARGUMENTS][48];
-    char text[FLOW_CALL_MAX];
+    char text[TRANSLATE_CALL_MAX];
 
     if ((!once && line_find_code(l, 'g', 660) == NULL) || p == NULL || !p->is_number)
         return;
@@ -326,7 +264,7 @@ static void take_sub_call(struct translator *t)
     struct line *l = &t->line;
     struct line_word *p = line_find(l, 'p', 0);
     char arguments[ARGUMENTS][48];
-    char call[FLOW_CALL_MAX];
+    char call[TRANSLATE_CALL_MAX];
     char text[32];
 
     if (line_find_code(l, 'm', 980) == NULL || p == NULL || !p->is_number)

@@ -1,57 +1,14 @@
 #include "dialect/translate.h"
 
-#include "dialect/output.h"
+#include "siemens/siemens.h"
+#include "translation/jumps.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* A dwell written without a point is in milliseconds from here on: nobody waits for less than that, or for minutes. */
-#define DWELL_MS_MIN  100.0
-#define LINE_TEXT_MAX 2304
-/* So much of a message is shown: with its parentheses it is a comment of a line that every control reads. */
-#define MESSAGE_MAX 201
-
-void translate_add(struct dialect_text *t, const char *format, ...)
-{
-    static const char goes_on = DIALECT_GOES_ON;
-    char text[LINE_TEXT_MAX];
-    va_list arguments;
-
-    va_start(arguments, format);
-    const int length = vsnprintf(text, sizeof text, format, arguments);
-
-    va_end(arguments);
-    output_add(t, &goes_on, 1);
-    output_add(t, text, length < (int)sizeof text ? (size_t)length : sizeof text - 1);
-    output_add(t, "\n", 1);
-}
-
-void translate_note(struct translator *t, const struct line_word *w, const char *meaning)
-{
-    struct dialect_result *r = t->result;
-    struct dialect_note note = {.line = t->number, .column = w->begin + 1U, .meaning = meaning};
-
-    (void)snprintf(note.word, sizeof note.word, "%.*s", (int)(w->end - w->begin),
-                   &t->line.text[w->begin]);
-    for (unsigned i = 0; i < r->notes; i++) {
-        if (strcmp(r->note[i].word, note.word) == 0)
-            return;
-    }
-    if (r->notes < DIALECT_NOTES_MAX)
-        r->note[r->notes++] = note;
-}
-
-void translate_message(struct translator *t, const char *text, size_t length)
-{
-    char shown[MESSAGE_MAX];
-
-    (void)snprintf(shown, sizeof shown, "%.*s", (int)length, text);
-    for (char *c = shown; *c != '\0'; c++)
-        *c = (char)(*c == '(' ? '[' : *c == ')' ? ']' : *c);
-    translate_add(&t->behind, "(msg,%s)", shown);
-}
+#define DWELL_MS_MIN 100.0
 
 /* ---- whole lines ---- */
 
@@ -349,8 +306,9 @@ static void put_out(struct translator *t, unsigned jumps)
     t->before.length = t->behind.length = 0;
 }
 
-static void translate_line(struct translator *t, const char *bytes, size_t length)
+static void translate_line(void *translator, const char *bytes, size_t length)
 {
+    struct translator *t = translator;
     const unsigned jumps = t->jumps;
 
     const char *end = memchr(bytes, DIALECT_TEXT_END, length);
@@ -364,7 +322,7 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
         output_add(&t->result->text, "\n", 1);
         return;
     }
-    flow_note_label(t, t->result->text.length);
+    jumps_note_label(t, t->result->text.length);
     globals_begin(t);
     values_translate(t);
     polar_translate(t);
@@ -380,8 +338,8 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
 }
 
 /* Calls take for each line of a text; a byte order mark is no part of the first. */
-static void each_line(struct translator *t, const char *bytes, size_t length,
-                      void (*take)(struct translator *, const char *, size_t))
+static void each_line(const char *bytes, size_t length,
+                      void (*take)(void *context, const char *, size_t), void *context)
 {
     const char *end = bytes + length;
 
@@ -390,13 +348,14 @@ static void each_line(struct translator *t, const char *bytes, size_t length,
     while (bytes < end) {
         const char *next = memchr(bytes, '\n', (size_t)(end - bytes));
 
-        take(t, bytes, (size_t)((next != NULL ? next : end) - bytes));
+        take(context, bytes, (size_t)((next != NULL ? next : end) - bytes));
         bytes = next != NULL ? next + 1 : end;
     }
 }
 
-static void survey_line(struct translator *t, const char *bytes, size_t length)
+static void survey_line(void *translator, const char *bytes, size_t length)
 {
+    struct translator *t = translator;
     struct line *l = &t->line;
 
     if (!line_read(l, bytes, length))
@@ -410,9 +369,27 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
                       (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
 }
 
-static void guess_line(struct translator *t, const char *bytes, size_t length)
+struct guess {
+    struct dialect_detector detector;
+    const struct dialect_codes *codes;
+};
+
+static void guess_line(void *guess, const char *bytes, size_t length)
 {
-    dialect_guess_line(&t->detector, bytes, length, t->codes);
+    struct guess *g = guess;
+
+    dialect_guess_line(&g->detector, bytes, length, g->codes);
+}
+
+/* The program does not say so, but centres of its arcs are absolute. */
+static bool is_absolute(const struct translator *t)
+{
+    struct guess guess = {.codes = t->codes};
+
+    if (translate_is(t, TRANSLATE_NOT_FOREIGN))
+        return false;
+    each_line(t->source, t->source_length, guess_line, &guess);
+    return dialect_guess_end(&guess.detector).absolute;
 }
 
 bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
@@ -429,17 +406,15 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     t->source = bytes;
     t->source_length = length;
     t->across = 'k';
-    each_line(t, bytes, length, guess_line);
-    t->absolute =
-        !translate_is(t, TRANSLATE_NOT_FOREIGN) && dialect_guess_end(&t->detector).absolute;
+    t->absolute = is_absolute(t);
     if (translate_is(t, TRANSLATE_MACROS))
-        each_line(t, bytes, length, survey_line);
+        each_line(bytes, length, survey_line, t);
     if (t->survey.lathe)
         t->across = 'j';
-    each_line(t, bytes, length, translate_line);
+    each_line(bytes, length, translate_line, t);
     if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_finish(t);
-    (void)flow_finish(t);
+    (void)jumps_finish(t);
     dialect_text_free(&t->before);
     dialect_text_free(&t->behind);
     free(t->label);

@@ -2,8 +2,8 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "dialect/line.h"
 #include "session/planner.h"
+#include "words/line.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 #include "editor/lsp_frames.h"
 
-#include "dialect/line.h"
+#include "words/line.h"
 
 #include <stdlib.h>
 #include <string.h>

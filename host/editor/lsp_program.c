@@ -2,12 +2,12 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "dialect/line.h"
 #include "editor/lint.h"
 #include "editor/lsp_text.h"
 #include "editor/meaning.h"
 #include "editor/mode_text.h"
 #include "session/session.h"
+#include "words/line.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "editor/meaning.h"
 
-#include "dialect/line.h"
+#include "words/line.h"
 
 #include <stdint.h>
 #include <string.h>

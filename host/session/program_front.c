@@ -3,8 +3,8 @@
 #include "session/program_front.h"
 
 #include "cli/message.h"
-#include "dialect/line.h"
 #include "session/subroutine_file.h"
+#include "words/line.h"
 
 #include <stdio.h>
 #include <stdlib.h>

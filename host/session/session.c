@@ -4,9 +4,9 @@
 #include "cli/message.h"
 #include "config/correction_file.h"
 #include "config/machine_file.h"
-#include "config/tool_guess.h"
 #include "program/comment_text.h"
 #include "session/program_front.h"
+#include "tables/tool_guess.h"
 
 #include <stdio.h>
 #include <stdlib.h>

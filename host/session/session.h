@@ -10,12 +10,12 @@
 #include "cli/status.h"
 #include "config/configuration_file.h"
 #include "config/machine_setup.h"
-#include "config/parameter_file.h"
-#include "config/tool_file.h"
 #include "controller/controller.h"
 #include "correction/tables.h"
 #include "cutter_compensation/cutter_compensation.h"
 #include "program/program.h"
+#include "tables/parameter_file.h"
+#include "tables/tool_file.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -2,7 +2,7 @@
 
 #include "session/subroutine_file.h"
 
-#include "dialect/line.h"
+#include "words/line.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #define TAKT_HOST_BUS_LOG_H
 
 #include "bus/candump.h"
-#include "bus/link.h"
+#include "link/link.h"
 #include "simulation/drive_network.h"
 #include "simulation/frame_buffer.h"
 

@@ -5,7 +5,7 @@
 #ifndef TAKT_HOST_BUS_RETURN_H
 #define TAKT_HOST_BUS_RETURN_H
 
-#include "bus/link.h"
+#include "link/link.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -9,10 +9,10 @@
 #define TAKT_HOST_DRIVE_NETWORK_H
 
 #include "bus/bus.h"
-#include "bus/link.h"
 #include "cli/status.h"
 #include "config/machine_setup.h"
 #include "drives/virtual_drives.h"
+#include "link/link.h"
 #include "simulation/bus_return.h"
 #include "simulation/drive_images.h"
 #include "simulation/frame_buffer.h"

@@ -17,9 +17,9 @@
 #define TAKT_HOST_LOCKSTEP_H
 
 #include "base/point.h"
-#include "bus/link.h"
 #include "drive/drives.h"
 #include "hal/can.h"
+#include "link/link.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -3,12 +3,12 @@
 #include "cli/message.h"
 #include "cli/stopwatch.h"
 #include "compiled/compiled.h"
-#include "config/inject_file.h"
-#include "config/probe_file.h"
 #include "config/shaper.h"
-#include "config/stock_file.h"
 #include "simulation/cutting_feed.h"
 #include "simulation/target_setup.h"
+#include "tables/inject_file.h"
+#include "tables/probe_file.h"
+#include "tables/stock_file.h"
 
 #include <stdlib.h>
 

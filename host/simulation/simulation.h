@@ -6,7 +6,6 @@
 #ifndef TAKT_HOST_SIMULATION_H
 #define TAKT_HOST_SIMULATION_H
 
-#include "config/override_file.h"
 #include "controller/controller.h"
 #include "hal/inputs.h"
 #include "probe/virtual_probe.h"
@@ -19,6 +18,7 @@
 #include "simulation/tool_point.h"
 #include "spindle/stock.h"
 #include "spindle/virtual_spindle.h"
+#include "tables/override_file.h"
 #include "target/target.h"
 
 #include <stdbool.h>

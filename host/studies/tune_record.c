@@ -2,7 +2,7 @@
 
 #include "base/maths.h"
 #include "cli/message.h"
-#include "config/rows.h"
+#include "tables/rows.h"
 
 static bool read_row(struct rows *rows, struct tuning_record *record, double unit)
 {

@@ -1,8 +1,7 @@
 /* takt circle: the circular test of ISO 230-4 on the virtual machine. */
-#include "circle/picture.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
-#include "studies/circle_test.h"
+#include "findings/circle_findings.h"
 #include "takt/command.h"
 
 #include <math.h>
@@ -12,12 +11,6 @@
 /* When nothing is said. */
 #define RADIUS_MM   50
 #define FEED_MM_MIN 3000
-
-struct circle_job {
-    struct circle_test test;
-    struct circle_figures figures[CIRCLE_WAYS + 1]; /* of each way, and of both */
-    enum axis axis[2];
-};
 
 static bool read_plane(const char *word, enum plane *plane)
 {
@@ -55,141 +48,40 @@ static bool read_centre(const char *text, struct circle_test *test)
     return false;
 }
 
-static bool set_test(struct circle_job *job, const struct options *options)
+static bool set_test(struct circle_findings *found, const struct options *options)
 {
     const struct option_circle *given = &options->circle;
-    struct circle_test *test = &job->test;
+    struct circle_test *test = &found->test;
 
     test->radius_mm = given->radius > 0 ? given->radius : RADIUS_MM;
     test->feed_mm_min = given->feed > 0 ? given->feed : FEED_MM_MIN;
     if (!read_plane(given->plane, &test->plane) || !read_centre(given->centre, test))
         return false;
-    takt_plane_axes(test->plane, &job->axis[0], &job->axis[1]);
+    takt_plane_axes(test->plane, &found->axis[0], &found->axis[1]);
     return true;
 }
 
-static void verifier(struct circle_job *job)
-{
-    const struct circle_turn *const turn[] = {&job->test.turn[CIRCLE_CCW],
-                                              &job->test.turn[CIRCLE_CW]};
-
-    for (unsigned way = 0; way < CIRCLE_WAYS; way++)
-        circle_figures_of(&turn[way], 1, &job->figures[way]);
-    circle_figures_of(turn, CIRCLE_WAYS, &job->figures[CIRCLE_WAYS]);
-}
-
-/* In um, without a minus before 0.000. */
-static double shown_um(double mm)
-{
-    return round(1e6 * mm) / 1000 + 0.0;
-}
-
-static void print_row(const struct circle_job *job, const char *name, size_t field)
-{
-    (void)printf("  %-34s", name);
-    for (unsigned i = 0; i <= CIRCLE_WAYS; i++)
-        (void)printf(" %9.3f",
-                     1000 *
-                         *(const double *)(const void *)((const char *)&job->figures[i] + field));
-    (void)fputc('\n', stdout);
-}
-
-/* At the end of an axis' way on which side: + first, + second, - first, - second. */
-static void print_reversals(const struct circle_job *job)
-{
-    for (unsigned quadrant = 0; quadrant < CIRCLE_QUADRANTS; quadrant++) {
-        const char axis = AXIS_LETTERS[job->axis[quadrant % 2]];
-
-        (void)printf("  reversal at %c%c, step               ", quadrant < 2 ? '+' : '-', axis);
-        for (unsigned way = 0; way < CIRCLE_WAYS; way++)
-            (void)printf(" %9.3f", shown_um(job->figures[way].reversal[quadrant].step_mm));
-        (void)printf("\n                  spike              ");
-        for (unsigned way = 0; way < CIRCLE_WAYS; way++)
-            (void)printf(" %9.3f", shown_um(job->figures[way].reversal[quadrant].spike_mm));
-        (void)fputc('\n', stdout);
-    }
-}
-
-static void print(const struct circle_job *job)
-{
-    const struct circle_test *t = &job->test;
-
-    (void)printf("circle about %c %g %c %g, R %g mm, F%g: um\n\n", AXIS_LETTERS[job->axis[0]],
-                 t->centre_mm[0], AXIS_LETTERS[job->axis[1]], t->centre_mm[1], t->radius_mm,
-                 t->feed_mm_min);
-    (void)printf("  %-34s %9s %9s %9s\n", "", "G3", "G2", "both");
-    print_row(job, "circular deviation G", offsetof(struct circle_figures, deviation_mm));
-    print_row(job, "radial deviation F max", offsetof(struct circle_figures, most_mm));
-    print_row(job, "                 F min", offsetof(struct circle_figures, least_mm));
-    print_row(job, "radius, from the programmed one",
-              offsetof(struct circle_figures, radius_out_mm));
-    print_row(job, "centre, first axis", offsetof(struct circle_figures, centre_mm));
-    print_row(job, "        second axis",
-              offsetof(struct circle_figures, centre_mm) + sizeof(double));
-    print_reversals(job);
-}
-
-static char *json_text(const struct circle_job *job)
-{
-    static const char *const names[] = {"ccw", "cw", "both"};
-    const struct circle_test *t = &job->test;
-    const char plane[] = {AXIS_LETTERS[job->axis[0]], AXIS_LETTERS[job->axis[1]], '\0'};
-    cJSON *root = cJSON_CreateObject();
-    char *text;
-
-    cJSON_AddStringToObject(root, "plane", plane);
-    cJSON_AddItemToObject(root, "centre_mm", cJSON_CreateDoubleArray(t->centre_mm, 2));
-    cJSON_AddNumberToObject(root, "radius_mm", t->radius_mm);
-    cJSON_AddNumberToObject(root, "feed_mm_min", t->feed_mm_min);
-    for (unsigned i = 0; i <= CIRCLE_WAYS; i++)
-        cJSON_AddItemToObject(root, names[i], circle_figures_json(&job->figures[i]));
-    text = cJSON_Print(root);
-    cJSON_Delete(root);
-    return text;
-}
-
-static void write_picture(FILE *file, const struct circle_job *job)
-{
-    const struct circle_picture picture = {
-        .axis = {AXIS_LETTERS[job->axis[0]], AXIS_LETTERS[job->axis[1]]},
-        .radius_mm = job->test.radius_mm,
-        .feed_mm_min = job->test.feed_mm_min,
-        .turn = job->test.turn,
-        .figures = job->figures,
-    };
-
-    circle_picture_write(file, &picture);
-}
-
-static void write_json(FILE *file, const struct circle_job *job)
-{
-    char *text = json_text(job);
-
-    (void)fprintf(file, "%s\n", text != NULL ? text : "");
-    cJSON_free(text);
-}
-
 /* Writes files that are open: all of them or none. */
-static bool write_files(const struct circle_job *job, struct output_file *picture,
+static bool write_files(const struct circle_findings *found, struct output_file *picture,
                         struct output_file *json)
 {
     if (picture->stream != NULL)
-        write_picture(picture->stream, job);
+        circle_findings_write_picture(picture->stream, found);
     if (json->stream != NULL)
-        write_json(json->stream, job);
+        circle_findings_write_json(json->stream, found);
     return (picture->stream == NULL || output_file_finish(picture)) &&
            (json->stream == NULL || output_file_finish(json));
 }
 
-static enum command_status finish(struct circle_job *job, const struct options *options,
+static enum command_status finish(struct circle_findings *found, const struct options *options,
                                   struct output_file *picture, struct output_file *json)
 {
     const bool has_picture = picture->stream != NULL, has_json = json->stream != NULL;
-    const double deviation_mm = job->figures[CIRCLE_WAYS].deviation_mm;
+    const double deviation_mm = found->figures[CIRCLE_WAYS].deviation_mm;
 
     if (!options->quiet && picture->stream != stdout && json->stream != stdout)
-        print(job);
-    if (!write_files(job, picture, json) || (has_picture && !output_file_place(picture)) ||
+        circle_findings_print(found);
+    if (!write_files(found, picture, json) || (has_picture && !output_file_place(picture)) ||
         (has_json && !output_file_place(json)))
         return STATUS_ENVIRONMENT;
     if (options->tolerance > 0 && deviation_mm > options->tolerance) {
@@ -200,19 +92,19 @@ static enum command_status finish(struct circle_job *job, const struct options *
     return STATUS_DONE;
 }
 
-static enum command_status execute(struct circle_job *job, const struct options *options)
+static enum command_status execute(struct circle_findings *found, const struct options *options)
 {
     static struct output_file picture, json;
     enum command_status status = STATUS_INPUT;
 
-    if (set_test(job, options))
+    if (set_test(found, options))
         status = (options->output == NULL || output_file_open(&picture, options->output)) &&
                          (options->json == NULL || output_file_open(&json, options->json))
-                     ? circle_test_run(&job->test, options)
+                     ? circle_test_run(&found->test, options)
                      : STATUS_ENVIRONMENT;
     if (status == STATUS_DONE) {
-        verifier(job);
-        status = finish(job, options, &picture, &json);
+        circle_findings_take(found);
+        status = finish(found, options, &picture, &json);
     }
     output_file_discard(&picture);
     output_file_discard(&json);
@@ -221,17 +113,17 @@ static enum command_status execute(struct circle_job *job, const struct options 
 
 static enum command_status command_circle_execute(const struct options *options)
 {
-    struct circle_job *job = calloc(1, sizeof *job);
+    struct circle_findings *found = calloc(1, sizeof *found);
     enum command_status status = STATUS_ENVIRONMENT;
 
-    if (job == NULL) {
+    if (found == NULL) {
         message_command_error("out of memory");
         return status;
     }
-    status = execute(job, options);
+    status = execute(found, options);
     for (unsigned way = 0; way < CIRCLE_WAYS; way++)
-        circle_turn_free(&job->test.turn[way]);
-    free(job);
+        circle_turn_free(&found->test.turn[way]);
+    free(found);
     return status;
 }
 

@@ -3,196 +3,19 @@
 
 #include "takt/command.h"
 
-#include "base/maths.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
-#include "config/data_sheet.h"
-#include "config/inject_file.h"
-#include "config/machine_file.h"
-#include "config/probe_file.h"
-#include "serving/drive_service.h"
+#include "outside/drive_service.h"
+#include "outside/drive_setup.h"
+#include "outside/spindle_service.h"
 #include "serving/serving_options.h"
-#include "serving/spindle_service.h"
 #include "simulation/drive_images.h"
 
 #include <poll.h>
-#include <stdlib.h>
 #include <string.h>
-
-#define NODE_MAX_ID 127
 
 /* How soon a signal is noticed while there is nothing else to do; it also ends the wait by itself. */
 #define SIGNAL_LOOK_MS 100
-
-/* Between two looks at Ctrl-C, which also ends a wait. */
-#define WAIT_MS 100
-
-/* Everything a command line has been read into. */
-struct drives_command {
-    const struct options *options;
-    struct machine_setup setup;
-    struct virtual_drives_config drives;
-    struct dictionary sheet[DATA_SHEETS_MAX]; /* of the machine's drives that have one */
-    struct dictionary given;                  /* --eds with --bus: of all drives */
-    struct inject script;
-    struct virtual_probe probe;
-};
-
-static unsigned bus_of(const struct drives_command *command)
-{
-    return (unsigned)maths_min(command->options->can, CAN_BUSES_MAX);
-}
-
-static bool add_drive(struct drives_command *command, unsigned node)
-{
-    struct virtual_drives_config *drives = &command->drives;
-    struct virtual_drive_config *drive = &drives->drive[drives->count];
-
-    if (drives->count == VIRTUAL_DRIVES_MAX) {
-        message_command_error("--nodes: more than %d drives", VIRTUAL_DRIVES_MAX);
-        return false;
-    }
-    for (unsigned i = 0; i < drives->count; i++) {
-        if (drives->drive[i].node == node) {
-            message_command_error("--nodes: %u is named twice", node);
-            return false;
-        }
-    }
-    drives->count++;
-    *drive = (struct virtual_drive_config){.node = (uint8_t)node,
-                                           .bus = (uint8_t)bus_of(command),
-                                           .increments_per_mm = 100000,
-                                           .cycle_us = command->setup.machine.cycle_us};
-    drive_plant_set_default(&drive->plant);
-    return true;
-}
-
-/* An axis of the machine with this node lends the drive its plant and its data sheet. */
-static bool use_axis(struct drives_command *command, struct virtual_drive_config *drive)
-{
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &command->setup.machine.axis[i];
-
-        if (!axis->present || axis->drive_node != drive->node || axis->drive_bus != bus_of(command))
-            continue;
-        drive->increments_per_mm = axis->increments_per_mm;
-        drive->velocity_units_per_mm_s = axis->velocity_units_per_mm_s;
-        if (!data_sheet_set_drive(drive, &command->setup.drive[i], &command->sheet[i]))
-            return false;
-    }
-    return true;
-}
-
-/* Reads "N" or "N-M" and steps over it. */
-static bool read_range(const char **text, unsigned long *from, unsigned long *to)
-{
-    char *end;
-
-    if (**text < '0' || **text > '9')
-        return false;
-    *from = *to = strtoul(*text, &end, 10);
-    if (*end == '-') {
-        const char *second = end + 1;
-
-        if (*second < '0' || *second > '9')
-            return false;
-        *to = strtoul(second, &end, 10);
-    }
-    *text = end;
-    return *from >= 1 && *to <= NODE_MAX_ID && *from <= *to;
-}
-
-/* "1-3", "1,2,5-6". */
-static bool read_nodes(struct drives_command *command, const char *nodes)
-{
-    const char *at = nodes;
-    unsigned long from;
-    unsigned long to;
-
-    for (;;) {
-        if (!read_range(&at, &from, &to) || (*at != ',' && *at != '\0')) {
-            message_command_error("--nodes %s: node ids 1 ... 127 are expected, as 1-3 or 1,2,5",
-                                  nodes);
-            return false;
-        }
-        for (unsigned long node = from; node <= to; node++) {
-            if (!add_drive(command, (unsigned)node))
-                return false;
-        }
-        if (*at == '\0')
-            return true;
-        at++;
-    }
-}
-
-/* Drives without a machine, but for those whose nodes it has. */
-static bool set_nodes(struct drives_command *command)
-{
-    if (!read_nodes(command, command->options->nodes))
-        return false;
-    for (unsigned i = 0; i < command->drives.count; i++)
-        if (!use_axis(command, &command->drives.drive[i]))
-            return false;
-    return true;
-}
-
-/* The other buses of the machine are other processes'. */
-static void keep_bus(struct virtual_drives_config *drives, uint32_t bus)
-{
-    unsigned kept = 0;
-
-    for (unsigned i = 0; i < drives->count; i++) {
-        if (drives->drive[i].bus == bus)
-            drives->drive[kept++] = drives->drive[i];
-    }
-    drives->count = kept;
-}
-
-static bool set_drives(struct drives_command *command)
-{
-    struct virtual_drives_config *drives = &command->drives;
-    const bool good = command->options->nodes != NULL
-                          ? set_nodes(command)
-                          : data_sheet_set_machine(drives, &command->setup, command->sheet);
-
-    keep_bus(drives, bus_of(command));
-    if (good && drives->count == 0 && command->options->bus != NULL) {
-        message_command_error("--can %u: the machine has no drive on that bus", bus_of(command));
-        return false;
-    }
-    for (unsigned i = 0; i < drives->count; i++) {
-        drives->drive[i].is_nameless = command->options->unconfigured;
-        if (command->given.count > 0 && !drives->drive[i].is_io)
-            drives->drive[i].dictionary = &command->given;
-    }
-    return good;
-}
-
-static bool load_script(struct drives_command *command)
-{
-    const char *path = command->options->inject;
-    uint16_t nodes[VIRTUAL_DRIVES_MAX];
-
-    if (path == NULL)
-        return true;
-    if (!inject_file_load(&command->script, path))
-        return false;
-    for (unsigned i = 0; i < command->drives.count; i++)
-        nodes[i] = INJECT_ADDRESS(command->drives.drive[i].bus, command->drives.drive[i].node);
-    if (!inject_file_check_nodes(&command->script, path, nodes, command->drives.count))
-        return false;
-    for (unsigned i = 0; i < command->script.count; i++) {
-        const struct inject_fault *fault = &command->script.fault[i];
-
-        if (inject_is_of_bus(fault->kind)) {
-            message_error(path, fault->line, 0,
-                          "bus %s is a fault of the embedded bus; here only drives can fail",
-                          inject_name(fault->kind));
-            return false;
-        }
-    }
-    return true;
-}
 
 /* Where the log goes; NULL: nowhere. False after a message. */
 static bool open_log(const struct options *options, FILE **log)
@@ -206,9 +29,9 @@ static bool open_log(const struct options *options, FILE **log)
     return *log != NULL;
 }
 
-static enum command_status serve(struct drives_command *command)
+static enum command_status serve(struct drive_setup *setup)
 {
-    const struct options *options = command->options;
+    const struct options *options = setup->options;
     FILE *log;
     enum command_status status;
 
@@ -216,18 +39,18 @@ static enum command_status serve(struct drives_command *command)
         return STATUS_ENVIRONMENT;
     status = drive_service_run(&(struct drive_service_config){
         .bus = options->bus,
-        .rates = machine_setup_get_rates(&command->setup.machine),
-        .cycle_us = command->setup.machine.cycle_us,
+        .rates = machine_setup_get_rates(&setup->machine.machine),
+        .cycle_us = setup->machine.machine.cycle_us,
         .is_paced = options->realtime,
-        .drives = &command->drives,
-        .script = options->inject != NULL ? &command->script : NULL,
+        .drives = &setup->drives,
+        .script = options->inject != NULL ? &setup->script : NULL,
         .log = log,
         .bus_log = options->bus_log,
         .store = options->store,
         .target = options->target,
         .image = options->image,
-        .machine = &command->setup.machine,
-        .probe = &command->probe,
+        .machine = &setup->machine.machine,
+        .probe = &setup->probe,
     });
     if (log != NULL && log != stdout && fclose(log) != 0 && status == STATUS_DONE) {
         message_command_error("--log %s: not everything could be written", options->log);
@@ -243,33 +66,24 @@ static void wait_for_signal(void)
         (void)poll(NULL, 0, SIGNAL_LOOK_MS);
 }
 
-static enum command_status serve_with_spindle(struct drives_command *command)
+static enum command_status serve_with_spindle(struct drive_setup *setup)
 {
     static struct spindle_service spindle;
-    const struct options *options = command->options;
+    const struct options *options = setup->options;
     enum command_status status = STATUS_DONE;
     uint8_t unit;
 
     if (!serving_options_unit(options->panel.unit, &unit))
         return STATUS_INPUT;
-    if (!spindle_service_start(&spindle, &command->setup, options->panel.spindle, unit,
+    if (!spindle_service_start(&spindle, &setup->machine, options->panel.spindle, unit,
                                options->quiet))
         return STATUS_ENVIRONMENT;
     if (options->bus != NULL)
-        status = serve(command);
+        status = serve(setup);
     else
         wait_for_signal();
     spindle_service_stop(&spindle);
     return status;
-}
-
-/* With a bus the drives are those of a data sheet; without one theirs are written. */
-static bool load_given(struct drives_command *command)
-{
-    const struct options *options = command->options;
-
-    return options->bus == NULL || options->eds == NULL ||
-           data_sheet_load(&command->given, options->eds);
 }
 
 static bool check_logs(const struct options *options)
@@ -313,10 +127,9 @@ static bool check_target(const struct options *options)
 
 static enum command_status command_drives_execute(const struct options *options)
 {
-    static struct drives_command command;
+    static struct drive_setup setup;
     enum command_status status = STATUS_DONE;
 
-    command.options = options;
     if (options->bus == NULL && options->eds == NULL && options->panel.spindle == NULL) {
         message_command_error("--bus says where the drives are to be reached, --spindle where the "
                               "spindle is, --eds where their data sheets go: one of them is "
@@ -325,16 +138,14 @@ static enum command_status command_drives_execute(const struct options *options)
     }
     if (!check_logs(options) || !check_target(options))
         return STATUS_INPUT;
-    if (!machine_file_load(&command.setup, options) || !load_given(&command) ||
-        !set_drives(&command) || !load_script(&command) ||
-        !probe_file_load(&command.probe, options->probe))
+    if (!drive_setup_read(&setup, options))
         return STATUS_INPUT;
     if (options->eds != NULL && options->bus == NULL)
-        status = data_sheet_write(&command.drives, options->eds);
+        status = data_sheet_write(&setup.drives, options->eds);
     if (status == STATUS_DONE && options->panel.spindle != NULL)
-        status = serve_with_spindle(&command);
+        status = serve_with_spindle(&setup);
     else if (status == STATUS_DONE && options->bus != NULL)
-        status = serve(&command);
+        status = serve(&setup);
     return status;
 }
 

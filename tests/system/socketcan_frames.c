@@ -3,7 +3,7 @@
  * kernel, and what happens when the interface goes down. The argument is an interface that this
  * program may switch off.
  */
-#include "bus/link.h"
+#include "link/link.h"
 #include "random_frame.h"
 
 #include <stdio.h>

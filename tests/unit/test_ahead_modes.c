@@ -4,7 +4,7 @@
  */
 #include "ahead/modes.h"
 #include "ahead/trail.h"
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 #include <string.h>
 #include <unity.h>

@@ -1,17 +1,12 @@
 /*
- * The optimiser: its band solver, and a small path from a first guess to a legal trajectory, the same on any number of
- * cores.
+ * The optimiser: a small path from a first guess to a legal trajectory, the same on any number of cores.
  */
-#include "ahead/band.h"
 #include "ahead/guess.h"
 #include "ahead/solver.h"
-#include "ahead/vector.h"
+#include "convex/vector.h"
 
 #include <string.h>
 #include <unity.h>
-
-#define SIZE  40
-#define WIDTH 16
 
 static const struct ahead_limits limits = {.velocity_mm_s = {100, 100, 100},
                                            .acceleration_mm_s2 = {1000, 1000, 1000},
@@ -25,29 +20,6 @@ void setUp(void)
 
 void tearDown(void)
 {
-}
-
-static void test_the_band_solver_solves(void)
-{
-    static double a[SIZE][WIDTH];
-    static double full[SIZE][SIZE];
-    double x[SIZE];
-
-    for (int j = 0; j < SIZE; j++) {
-        x[j] = 0;
-        for (int k = 0; k < WIDTH && j + k < SIZE; k++) {
-            a[j][k] = k == 0 ? 40 + j : 1.0 / (1 + j + 3 * k);
-            full[j + k][j] = full[j][j + k] = a[j][k];
-        }
-    }
-    for (int i = 0; i < SIZE; i++) {
-        for (int j = 0; j < SIZE; j++)
-            x[i] += full[i][j] * (j - 7);
-    }
-    band_factor(a[0], WIDTH, SIZE);
-    band_solve(a[0], WIDTH, SIZE, x);
-    for (int j = 0; j < SIZE; j++)
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, j - 7, x[j]);
 }
 
 /* A square, closed. */
@@ -168,7 +140,6 @@ static void test_the_place_where_it_is_stuck_is_on_the_path(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_the_band_solver_solves);
     RUN_TEST(test_differences_of_control_points_keep_the_limits);
     RUN_TEST(test_every_corner_is_passed_within_the_tolerance);
     RUN_TEST(test_the_place_where_it_is_stuck_is_on_the_path);

@@ -1,5 +1,5 @@
 /* host/simulation/lockstep.h: for which drives a cycle waits. The test is the drive, at the other end of a pseudo-terminal. */
-#include "bus/link.h"
+#include "link/link.h"
 #include "simulation/lockstep.h"
 #include "unity.h"
 

@@ -2,10 +2,10 @@
 #include "readers.h"
 
 #include "bus/candump_read.h"
-#include "bus/slcan.h"
-#include "bus/socketcand.h"
 #include "drive/drives.h"
 #include "drives/virtual_drives.h"
+#include "link/slcan.h"
+#include "link/socketcand.h"
 
 #include <string.h>
 

@@ -5,13 +5,13 @@
 
 #include "config/correction_file.h"
 #include "config/data_sheet.h"
-#include "config/inject_file.h"
 #include "config/machine_file.h"
-#include "config/override_file.h"
-#include "config/parameter_file.h"
-#include "config/probe_file.h"
-#include "config/tool_file.h"
 #include "drives/dictionary_read.h"
+#include "tables/inject_file.h"
+#include "tables/override_file.h"
+#include "tables/parameter_file.h"
+#include "tables/probe_file.h"
+#include "tables/tool_file.h"
 #include "trace/trace_check.h"
 #include "trace/trace_reader.h"
 

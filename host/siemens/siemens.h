@@ -1,0 +1,15 @@
+/*
+ * The language of Siemens' controllers, line by line, into what the rest of a translation understands.
+ */
+#ifndef TAKT_HOST_SIEMENS_H
+#define TAKT_HOST_SIEMENS_H
+
+#include "translation/translator.h"
+
+/* What Siemens' controllers say in words. */
+void siemens_translate(struct translator *t);
+void siemens_finish(struct translator *t);
+/* Only programs for them have such a line. */
+bool siemens_tells(const struct line *l);
+
+#endif

@@ -1,0 +1,15 @@
+/* Jumps and their targets: places in the text, filled in when all lines have theirs. */
+#ifndef TAKT_HOST_TRANSLATION_JUMPS_H
+#define TAKT_HOST_TRANSLATION_JUMPS_H
+
+#include "translation/translator.h"
+
+/* The line begins at this place of the text. */
+void jumps_note_label(struct translator *t, size_t offset);
+/* The same for a number, or a name that has been given one. */
+void jumps_add_label(struct translator *t, uint32_t number);
+void jumps_go_to(struct translator *t, uint32_t number);
+/* Fills in where jumps go. False: one has no target; the result says which. */
+bool jumps_finish(struct translator *t);
+
+#endif
