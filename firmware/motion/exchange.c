@@ -141,7 +141,7 @@ static uint64_t piece_leave(const struct motion *m)
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return m->reference.at;
     }
-    return takt_ceiling_leave(here->ceiling, here->piece);
+    return path_ceiling_leave(here->ceiling, here->piece);
 }
 
 /* An override asked for while the trapezoidal reference brakes waits for the next block (seed 003 section 2). 0 is a hold. */

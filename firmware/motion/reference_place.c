@@ -39,7 +39,7 @@ static float low_feed_mm_s(struct reference_place *p, uint32_t i)
 static void find_lowest(struct reference_place *p)
 {
     p->low_feed = ceiling_feed(p->ceiling, low_feed_mm_s(p, 0));
-    p->low_leave = takt_ceiling_leave(p->ceiling, low_at(p, 0)->leave);
+    p->low_leave = path_ceiling_leave(p->ceiling, low_at(p, 0)->leave);
 }
 
 /* Where there is no room for one more the last two become one: the lower feed until the later place. */
@@ -81,7 +81,7 @@ double takt_reference_low_feed(struct reference *l, uint64_t setpoint)
 static bool has_passed(const struct reference *l, const struct ceiling *c, uint32_t k)
 {
     return reference_is_last_of_span(&c->piece[k])
-               ? reference_is_beyond(l->at, takt_ceiling_leave(c, k))
+               ? reference_is_beyond(l->at, path_ceiling_leave(c, k))
                : path_mm(c->origin, l->at) >= c->end_mm[k];
 }
 
@@ -349,7 +349,7 @@ static bool search(struct reference *l)
     if (p->piece == p->ceiling->count) {
         return false;
     }
-    const uint64_t leave = takt_ceiling_leave(p->ceiling, p->piece);
+    const uint64_t leave = path_ceiling_leave(p->ceiling, p->piece);
 
     if (reference_is_beyond(l->standing ? l->at : l->span, leave)) {
         p->piece++;

@@ -6,6 +6,7 @@
 #define TAKT_MOTION_REFERENCE_PRIVATE_H
 
 #include "motion/reference.h"
+#include "plan/path.h"
 #include "plan/path_unit.h"
 
 #include <stddef.h>
@@ -64,7 +65,7 @@ static inline double reference_end_mm(const struct reference *l, uint32_t k)
 /* Where the setpoint leaves what piece k is made of. */
 static inline uint64_t reference_leave_of(const struct reference *l, uint32_t k)
 {
-    return takt_ceiling_leave(l->here.ceiling, k);
+    return path_ceiling_leave(l->here.ceiling, k);
 }
 
 static inline double reference_square(double x)

@@ -426,25 +426,10 @@ void takt_ceiling_build(struct ceiling *c, struct path *path, const struct ceili
     takt_ceiling_plan_backward(c, path->limits.profile);
 }
 
-/* Those before the oldest that is kept may have been overwritten. */
-static uint32_t kept_block(const struct ceiling *c, unsigned block)
-{
-    const uint32_t kept = c->path->kept;
-    const uint32_t index = c->first + block;
-
-    return (int32_t)(index - kept) < 0 ? kept : index;
-}
-
 uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k)
 {
     TAKT_ASSERT(k < c->count);
-    return path_start(c->path, kept_block(c, c->piece[k].start));
-}
-
-uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k)
-{
-    TAKT_ASSERT(k < c->count);
-    return path_start(c->path, kept_block(c, c->piece[k].leave));
+    return path_start(c->path, path_of_ceiling(c, c->piece[k].start));
 }
 
 float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k)
@@ -453,15 +438,15 @@ float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k)
 
     return p->landed ? p->feed_mm_s
                      : takt_maths_float_below(
-                           takt_path_block_top(path_at(c->path, kept_block(c, p->start))));
+                           takt_path_block_top(path_at(c->path, path_of_ceiling(c, p->start))));
 }
 
 unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k)
 {
-    return block_overrides(path_at(c->path, kept_block(c, c->piece[k].leave - 1U)));
+    return block_overrides(path_at(c->path, path_of_ceiling(c, c->piece[k].leave - 1U)));
 }
 
 uint32_t takt_ceiling_cycles(const struct ceiling *c, uint32_t k)
 {
-    return path_at(c->path, kept_block(c, c->piece[k].start))->cycles;
+    return path_at(c->path, path_of_ceiling(c, c->piece[k].start))->cycles;
 }

@@ -100,11 +100,10 @@ void takt_ceiling_build(struct ceiling *c, struct path *path,
                         const struct ceiling_request *request);
 
 /*
- * Control cycle: where on the path the setpoint comes to what a piece is made of, and where it leaves it. Of what it had
+ * Control cycle: where on the path the setpoint comes to what a piece is made of; where it leaves it: path.h. Of what it had
  * left when a ceiling was asked for last: where the block started that it was in.
  */
 uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k);
-uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k);
 
 /* The highest feed whatever the overrides are, of what a piece begins with, mm/s. */
 float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k);

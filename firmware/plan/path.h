@@ -119,6 +119,19 @@ static inline struct ceiling *path_ceiling(struct path *p, unsigned which)
 {
     return which == 0 ? &p->area.low.ceiling : &p->area.high.ceiling;
 }
+/* A block of a ceiling. Those before the oldest that is kept may have been overwritten: that one stands for them. */
+static inline uint32_t path_of_ceiling(const struct ceiling *c, unsigned block)
+{
+    const uint32_t kept = c->path->kept;
+    const uint32_t index = c->first + block;
+
+    return (int32_t)(index - kept) < 0 ? kept : index;
+}
+/* Control cycle: where on the path the setpoint leaves what piece k < count is made of. */
+static inline uint64_t path_ceiling_leave(const struct ceiling *c, uint32_t k)
+{
+    return path_start(c->path, path_of_ceiling(c, c->piece[k].leave));
+}
 /* Kind of its move, and its feed per revolution, 0: none. */
 enum move_kind takt_path_kind(const struct path *p, uint32_t index);
 double takt_path_feed_rev(const struct path *p, uint32_t index);
@@ -133,7 +146,7 @@ static inline const struct block *path_read(struct path *p, uint32_t index)
     return ring_is_read(&p->ring, index) ? &p->ring.view[index % 2].block
                                          : takt_ring_read(&p->ring, index, path_end(p, index));
 }
-/* Control cycle: a step towards that, of a block that is closed; four make it ready. */
+/* Control cycle: a step towards that, of a block that is closed; five make it ready. */
 static inline void path_prepare(struct path *p, uint32_t index)
 {
     if (!ring_is_read(&p->ring, index)) {

@@ -212,16 +212,11 @@ static void take(struct path_ring *r, uint32_t index, struct path_view *view)
     takt_record_take(ring_record(r, index), before, view->from, &view->block);
 }
 
-static enum view_state finish(const struct path_ring *r, uint32_t index, uint64_t end,
-                              struct path_view *view)
+static void finish(const struct path_ring *r, uint32_t index, uint64_t end, struct block *b)
 {
-    struct block *b = &view->block;
-
-    takt_record_finish(ring_record(r, index), b);
     b->scale = takt_scale_of_curve(&b->curve, &r->scale);
     b->length_mm = b->curve.length_mm / b->scale;
     read_limits(ring_at(r, index), end, b);
-    return VIEW_READ;
 }
 
 void takt_ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
@@ -240,11 +235,18 @@ void takt_ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
         view->state = VIEW_TAKEN;
         break;
     case VIEW_TAKEN:
-        view->state = takt_record_begin_curve(record, &view->block) ? VIEW_CURVED
-                                                                    : finish(r, index, end, view);
-        break;
+        view->state = VIEW_CURVED;
+        if (takt_record_begin_curve(record, &view->block)) {
+            break; /* the end of an arc is a part for itself */
+        }
+        /* fall through */
     case VIEW_CURVED:
-        view->state = finish(r, index, end, view);
+        takt_record_finish(record, &view->block);
+        view->state = VIEW_FINISHED;
+        break;
+    case VIEW_FINISHED:
+        finish(r, index, end, &view->block);
+        view->state = VIEW_READ;
         break;
     case VIEW_READ:
         break;

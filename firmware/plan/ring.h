@@ -55,8 +55,8 @@ struct path_block {
     unsigned smooth : 1;         /* a piece of a smoothed curve */
 };
 
-/* How much of a block has been read: nothing, its head, all numbers, half of an arc's curve, all. */
-enum view_state { VIEW_EMPTY, VIEW_BEGUN, VIEW_TAKEN, VIEW_CURVED, VIEW_READ };
+/* How much of a block has been read: nothing, its head, all numbers, half of an arc's curve, the whole curve, all. */
+enum view_state { VIEW_EMPTY, VIEW_BEGUN, VIEW_TAKEN, VIEW_CURVED, VIEW_FINISHED, VIEW_READ };
 
 /* A block as it is executed. */
 struct path_view {
@@ -116,7 +116,7 @@ static inline bool ring_is_read(const struct path_ring *r, uint32_t index)
 
 /* Makes it so: limits, move and curve. Control cycle alone. end: its end on the path, path units. */
 const struct block *takt_ring_read(struct path_ring *r, uint32_t index, uint64_t end);
-/* The next part of that, for a cycle that has no time for all: four at most. */
+/* The next part of that, for a cycle that has no time for all: five at most. */
 void takt_ring_prepare(struct path_ring *r, uint32_t index, uint64_t end);
 
 /* The control points of a block that is a piece of a smoothed curve. */

@@ -204,7 +204,7 @@ static void run_random(uint64_t seed)
         take(way, STRETCHES, ratio, true);
         TEST_ASSERT_TRUE_MESSAGE(cycles < 400000, "does not come to the stop");
     } while (!reference.standing);
-    TEST_ASSERT_EQUAL_UINT64(takt_ceiling_leave(&ceilings[active], STRETCHES - 1), reference.at);
+    TEST_ASSERT_EQUAL_UINT64(path_ceiling_leave(&ceilings[active], STRETCHES - 1), reference.at);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, end_mm, at_mm());
 }
 

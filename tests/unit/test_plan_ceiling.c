@@ -135,7 +135,7 @@ static void test_a_slower_block_begins_earlier_by_half_the_window(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50.0 - 0.04 * 11.5, ceiling.end_mm[1]);
     TEST_ASSERT_TRUE(ceiling.piece[1].feed_mm_s == 100.0F);
     TEST_ASSERT_EQUAL_UINT64(path_units(50.0), takt_ceiling_start(&ceiling, 1));
-    TEST_ASSERT_EQUAL_UINT64(path_units(50.0), takt_ceiling_leave(&ceiling, 1));
+    TEST_ASSERT_EQUAL_UINT64(path_units(50.0), path_ceiling_leave(&ceiling, 1));
 }
 
 /* u = min(c^2, u_next + 2 a L), from rest at the end backwards. */
@@ -241,12 +241,12 @@ static void test_what_has_been_left_long_ago_was_left_where_the_oldest_block_sta
     push(MOVE_FEED, 40.0, 60.0);
     push(MOVE_FEED, 60.0, 70.0);
     build();
-    TEST_ASSERT_EQUAL_UINT64(path_units(20.0), takt_ceiling_leave(&ceiling, 0));
+    TEST_ASSERT_EQUAL_UINT64(path_units(20.0), path_ceiling_leave(&ceiling, 0));
     TEST_ASSERT_EQUAL_UINT64(path_units(20.0), takt_ceiling_start(&ceiling, 1));
     path.kept = 2;
-    TEST_ASSERT_EQUAL_UINT64(path_units(40.0), takt_ceiling_leave(&ceiling, 0));
+    TEST_ASSERT_EQUAL_UINT64(path_units(40.0), path_ceiling_leave(&ceiling, 0));
     TEST_ASSERT_EQUAL_UINT64(path_units(40.0), takt_ceiling_start(&ceiling, 1));
-    TEST_ASSERT_EQUAL_UINT64(path_units(60.0), takt_ceiling_leave(&ceiling, 2));
+    TEST_ASSERT_EQUAL_UINT64(path_units(60.0), path_ceiling_leave(&ceiling, 2));
 }
 
 int main(void)
