@@ -161,6 +161,18 @@ static float time_of_rests(const struct worth_window *now)
     return time;
 }
 
+/* A curve takes up to so many times what its pieces seem to take: of 1,200 random programs most are within it. */
+#define LONGER 1.04f
+
+/* Is the path quicker on all that is known, if the curve takes as much of its time there as on a stretch of it? */
+static bool is_quicker_on(const struct worth_window *now, float curve, float path)
+{
+    const float all = takt_exact_time(now->route, now->machine, now->window->at_mm[0],
+                                      now->window->element[0], now->route->count);
+
+    return all < (now->finished ? 2.0f : 1.0f) * now->rest_s + LONGER * curve / path * all;
+}
+
 bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
 {
     const struct window *w = now->window;
@@ -182,8 +194,8 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
     }
     *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
     if (last.time > 0.0f) {
-        return takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) <
-               last.time - ramp(now, last.element, last.feed);
+        return is_quicker_on(now, last.time - now->rest_s - ramp(now, last.element, last.feed),
+                             takt_exact_time(r, now->machine, at_mm, w->element[0], last.element));
     }
     const float gained = now->finished ? time_of_rests(now) - now->rest_s : now->rest_s;
 
