@@ -25,10 +25,10 @@ FIRST = 880001
 # Strokes are longer by this at most.
 STROKES_MOST = 1.15
 # Of random programs this part is slower, and by this at most.
-SLOWER_PART = 0.12
-SLOWER_MOST = 2.0
+SLOWER_PART = 0.08
+SLOWER_MOST = 1.6
 WIDER_PART = 0.25
-WIDER_MOST = 2.4
+WIDER_MOST = 2.0
 
 STROKES = """G21 G90 G17 G64 P{} F6000
 G1 X4 Y1
