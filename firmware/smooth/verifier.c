@@ -151,7 +151,7 @@ static struct look look_of(const struct window *w, const struct route *r, unsign
     return look;
 }
 
-/* The place on the route beside one of the curve. */
+/* The place on the route beside one of the curve. The last samples may be thought to be before those that come to them. */
 static void find_closest(const struct window *w, const struct route *r, unsigned piece,
                          const float weight[4], struct route_closest *closest)
 {
@@ -167,7 +167,7 @@ static void find_closest(const struct window *w, const struct route *r, unsigned
     takt_window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
     takt_window_spot(w, r, piece, weight, &spot);
     takt_window_place(w, r, &spot, p);
-    takt_route_closest(r, p, from, to, closest);
+    takt_route_closest(r, p, from, maths_max(from, to), closest);
 }
 
 /* How far a place of a piece leaves the tolerance; 0 or less: not at all. */
