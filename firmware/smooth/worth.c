@@ -59,7 +59,7 @@ struct passed {
     float feed;
     float kept;
     float rate; /* there */
-    float stop; /* what coming to rest where they begin takes longer than to go on */
+    float stop; /* r/2r': what coming to rest where they begin takes longer than to go on */
 };
 
 /* v/2a + w a/2j, a^2 <= v j/w: what a ramp from rest takes longer than its way at the feed. */
@@ -225,7 +225,6 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
     const float change = now->rest_s + last.stop + ramp(now, w->element[1], feed);
 
     since->rate = last.rate;
-
     since->spent_s += last.kept;
     return path_time(now, first) + change < spent + time;
 }
