@@ -8,6 +8,9 @@
 /* Pieces of curved curves are off by this part of the tolerance at most: so much more has the order of places on them. */
 #define CUT_PART 0.002
 
+/* Lines that may be one element (smooth/merge.h). */
+#define LINES_OF_ELEMENT 25
+
 /* At first; it grows. */
 #define CAPACITY 64
 
@@ -86,8 +89,10 @@ static void append_point(struct tube_path *p)
 {
     struct tube_piece *piece;
 
-    const struct tube_motion none = {
-        .number = p->motions, .tolerance_mm = p->exact_mm, .travel_mm = p->travel_mm};
+    const struct tube_motion none = {.number = p->motions,
+                                     .tolerance_mm = p->exact_mm,
+                                     .travel_mm = p->travel_mm,
+                                     .elements = p->elements};
 
     if (!begin_motion(p, &none))
         return;
@@ -152,6 +157,8 @@ static bool take_motion(struct tube_path *p, const struct move *move, const stru
     const bool rounded = move->path == PATH_BLEND && move->tolerance_mm > 0;
     const double tolerance_mm = rounded ? p->tolerances * move->tolerance_mm : p->exact_mm;
 
+    p->elements += maths_clamp(curve->length_mm / (2 * tolerance_mm), 1.0 / LINES_OF_ELEMENT, 1);
+
     struct tube_motion motion = {
         .curve = *curve,
         .line = move->line,
@@ -161,6 +168,7 @@ static bool take_motion(struct tube_path *p, const struct move *move, const stru
         .tolerance_mm = tolerance_mm,
         .turning_mm = move->kind == MOVE_TAP ? TUBE_TURNING_REV * move->feed_rev_mm : 0,
         .travel_mm = p->travel_mm,
+        .elements = p->elements,
         .cut_mm = curve->kind == CURVE_LINE ? 0 : CUT_PART * tolerance_mm};
 
     if (curve->kind == CURVE_ARC) /* its curvature falls or rises all along, by rounded decimals */

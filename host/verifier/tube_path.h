@@ -1,6 +1,10 @@
 /*
  * A program's path as the verifier of rounded paths wants it: read as it is needed, and cut into straight pieces.
  *
+ * A planner may take several lines for one element, as long as that is straight. Of one within the tolerance of a place no
+ * more than twice the tolerance is, so a motion counts as that part of an element which it is of that length, no less than a
+ * 25th and no more than a whole one.
+ *
  * Bent curves are cut so that a piece is off the curve by a small part of the tolerance. Only the pieces between the
  * first and the last that are asked for are in memory.
  */
@@ -30,6 +34,7 @@ struct tube_motion {
     double tolerance_mm; /* P, or of an exact one what it may be off */
     double turning_mm;   /* a tap turns back so far before its end at most; 0: it is none */
     double travel_mm;    /* path before it; motions of rotary axes alone have none */
+    double elements;     /* to its end */
     double cut_mm;       /* pieces are so far off the curve at most */
     double even_mm;      /* length of an arc's pieces; 0: it is none */
 };
@@ -54,6 +59,7 @@ struct tube_path {
     struct point end;           /* of what has been read */
     uint32_t motions;           /* likewise, those without a length too */
     double travel_mm;           /* of what has been read */
+    double elements;            /* likewise */
     struct tube_motion *motion; /* read last, */
     double cut_to_mm;           /* how far pieces have been made of it, */
     struct point cut_to;        /* and where that is */

@@ -11,15 +11,15 @@
 #define REACH_TOLERANCES 20
 
 /*
- * Where the setpoint is within the tolerance of the path up to this many motions beyond the one that is executed, no
- * more are gone to; as many behind it are not left yet. What the planner on board rounds at once has fewer
- * (smooth/route.h), and there a circle is one, which is cut into many pieces here.
+ * Where the setpoint is within the tolerance of the path up to this many elements (tube_path.h) beyond the motion that is
+ * executed, no more are gone to; as many behind it are not left yet. What the planner on board rounds at once has fewer
+ * (smooth/route.h).
  */
 #define CROWD 128
 /*
  * And no more than this many pieces: for circles of many turns within the tolerance work would grow with their square.
  */
-#define CROWD_PIECES 1024
+#define CROWD_PIECES 4096
 
 /* The motion that is said to be executed may be this many off: curves over several have the number of one. */
 #define NUMBER_ROOM 16
@@ -132,12 +132,13 @@ static bool has_piece(struct tube_verifier *t, size_t k)
     return k < t->path.count || tube_path_extend(&t->path);
 }
 
-/* Is piece k far ahead of piece `from`, which belongs to a motion? */
-static bool is_far(const struct tube_verifier *t, size_t k, size_t from, uint32_t motion)
+/* Is piece k far ahead of piece `from`? */
+static bool is_far(const struct tube_verifier *t, size_t k, size_t from)
 {
-    const uint32_t number = tube_path_at(&t->path, k)->motion->number;
+    const double ahead = tube_path_at(&t->path, k)->motion->elements -
+                         tube_path_at(&t->path, from)->motion->elements;
 
-    return (number > motion && number - motion > CROWD) || k > from + CROWD_PIECES;
+    return ahead > CROWD || k > from + CROWD_PIECES;
 }
 
 /* All places that the setpoint may be at now. False: there is none; *n is then the nearest of those that were left. */
@@ -149,7 +150,7 @@ static bool follow(struct tube_verifier *t, const struct stride *step, struct ne
     for (size_t k = 0; (k < t->active || entered >= 0) && has_piece(t, k); k++) {
         if (tube_path_at(&t->path, k)->motion->number <= step->motion)
             said = k;
-        if (k >= t->active && is_far(t, k, said, step->motion) && n->of_tolerance <= 1)
+        if (k >= t->active && is_far(t, k, said) && n->of_tolerance <= 1)
             break;
         if (entered < 0 && !tube_path_at(&t->path, k)->reached)
             continue;
@@ -323,15 +324,14 @@ static bool is_believed(const struct tube_piece *piece, const struct stride *ste
 /* The first piece that is believed, of those far ahead of the first one; t->active: there is none. */
 static size_t find_believed(struct tube_verifier *t, const struct stride *step)
 {
-    const uint32_t first = tube_path_at(&t->path, 0)->motion->number;
     size_t k = t->active;
 
-    if (!is_far(t, k - 1, 0, first))
+    if (!is_far(t, k - 1, 0))
         return k;
     for (k = 0; k < t->active; k++) {
         const struct tube_piece *piece = tube_path_at(&t->path, k);
 
-        if (is_far(t, k, 0, first) && is_believed(piece, step))
+        if (is_far(t, k, 0) && is_believed(piece, step))
             break;
     }
     return k;
@@ -345,8 +345,7 @@ static void leave_crowd(struct tube_verifier *t, const struct stride *step)
     for (; k < t->active && k > 0; k--) {
         const struct tube_piece *piece = tube_path_at(&t->path, 0);
 
-        if (!is_far(t, k, 0, piece->motion->number) ||
-            (piece->ends && piece->corner_mm > allowed_mm(t, piece)))
+        if (!is_far(t, k, 0) || (piece->ends && piece->corner_mm > allowed_mm(t, piece)))
             return;
         settle_corner(t);
         tube_path_drop(&t->path);
