@@ -30,8 +30,8 @@ static void set_interval(struct smooth *s)
 
     s->moved = s->route.moved;
     find_change(s, interval_s, &s->change);
-    s->route.slots.change_per_s = (float)s->change.by;
-    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
+    s->route.slots.change_per_s = (float)s->change.wanted;
+    s->route.slots.rounded_per_s2 = (float)(s->change.wanted / s->change.rounding_s);
     s->route.chord_per_second =
         (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
     takt_window_init(&s->window, &s->route, interval_s);

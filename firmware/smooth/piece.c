@@ -72,8 +72,7 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     takt_verifier_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
     piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
-    piece->change.by =
-        (double)takt_verifier_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
+    piece->change.by = (double)takt_verifier_change_on(&need, &s->route, &s->change, &rate);
     piece->change.rounded = piece->change.by / s->change.rounding_s;
     piece->stop = s->stops && s->taken + 1 == s->ready;
     piece->last = s->finished && w->at_end && i + 4 == w->count;

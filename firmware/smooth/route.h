@@ -27,8 +27,9 @@ struct route_slots {
     float velocity_mm_s[SMOOTH_SLOTS_MAX];
     float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
     float jerk_mm_s3[SMOOTH_SLOTS_MAX];
-    float change_per_s;   /* how fast the rate may change on every piece (verifier.h), */
-    float rounded_per_s2; /* and begin to */
+    float
+        change_per_s; /* how fast the rate is to change where the axes are slow enough (verifier.h), */
+    float rounded_per_s2; /* and to begin to */
 };
 
 /* What a curve has that a line between the same two points does not have; its slope is found from those. */

@@ -19,13 +19,14 @@ struct verifier_need {
 /* How fast nominal time may pass on a piece. */
 struct verifier_rate {
     float most;       /* by the axes' limits: never exceeded */
+    float by;         /* how fast it may change there, 1/s */
     float programmed; /* at the programmed feed; infinite for a rapid */
 };
 
-/* How fast the rate of nominal time may change, on every piece of a chain where the axes move: 1/s, 1/s2. */
+/* How fast the rate of nominal time may change where the axes of a chain move: 1/s. */
 struct verifier_change {
-    double by;
-    double rounded;
+    double by;         /* on every piece, */
+    double wanted;     /* and on those that can leave it: a power of two times that */
     double rounding_s; /* over which it is rounded */
 };
 
@@ -34,14 +35,15 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
                           struct verifier_change *change);
 void takt_verifier_need(const struct window *w, const struct route *r, unsigned piece,
                         struct verifier_need *need);
-/*
- * How fast the rate may change on a piece while it is not above a rate, 1/s: at least by change, and a power of two times
- * that, so that neighbours mostly have the same.
- */
-float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
-                              const struct verifier_change *change, float rate);
 void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,
                         const struct verifier_change *change, struct verifier_rate *rate);
+/*
+ * How fast the rate may change on a piece while it is not above the highest one, and not above 1: 1/s, a power of two times
+ * change->by, so that neighbours mostly have the same.
+ */
+float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
+                              const struct verifier_change *change,
+                              const struct verifier_rate *rate);
 /* The rate at which a piece is gone along at the programmed feed of an element; infinite for a rapid. */
 float takt_verifier_programmed(const struct verifier_need *need, const struct route *r,
                                uint32_t element);

@@ -24,11 +24,17 @@
 #define ROUNDING_PART 0.3
 #define TURNING_PART  0.4f
 
+/* A power of two times what every piece leaves is what is needed, if no farther from it than by this. */
+#define NEAR_ENOUGH 1.4142
+
 /* Where the axes nearly stand, nothing else bounds the rate. */
 #define RATE_MAX 4.0f
 
 /* Changes of rate are not rounded over more cycles than these. */
 #define ROUNDING_CYCLES_MAX 64.0
+
+/* A piece leaves more for changes of rate as long as that leaves so much of the rate. */
+#define NEARLY 0.9f
 
 /* A rate does not change faster than this times what it may change by on every piece. */
 #define CHANGE_MOST 64.0f
@@ -96,13 +102,17 @@ static double reached(const struct smooth_limits *limits, int axis)
  * The trapezoidal reference comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
  * slow before the end of what is known, over and over.
  */
-static double change_of_axis_at_rest(const struct smooth_limits *limits, double interval_s,
-                                     int axis)
+static double change_needed(double interval_s)
+{
+    return 1.0 / (2.0 * KNOWN_PART * SMOOTH_AHEAD_PIECES * interval_s);
+}
+
+/* What an axis may do of that at its highest velocity. */
+static double change_at_full(const struct smooth_limits *limits, double interval_s, int axis)
 {
     const double most = reached(limits, axis) / limits->velocity_mm_s[axis];
-    const double needed = 1.0 / (2.0 * KNOWN_PART * SMOOTH_AHEAD_PIECES * interval_s);
 
-    return maths_clamp(needed, LEFT_LEAST * most, LEFT_MOST * most);
+    return maths_clamp(change_needed(interval_s), LEFT_LEAST * most, LEFT_MOST * most);
 }
 
 /*
@@ -121,7 +131,7 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
         if ((limits->axes >> i & 1U) != 0) {
             const double ramp_s = reached(limits, i) / limits->jerk_mm_s3[i];
 
-            change->by = maths_min(change->by, change_of_axis_at_rest(limits, interval_s, i));
+            change->by = maths_min(change->by, change_at_full(limits, interval_s, i));
             rounding_s = maths_max(rounding_s, ramp_s);
             most =
                 maths_min(most, ROUNDING_PART * limits->jerk_mm_s3[i] / limits->velocity_mm_s[i]);
@@ -131,7 +141,10 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
     if (change->rounding_s < rounding_s) {
         change->by = maths_min(change->by, most * change->rounding_s);
     }
-    change->rounded = change->by / change->rounding_s;
+    change->wanted = change->by;
+    while (2.0 * change->wanted < NEAR_ENOUGH * change_needed(interval_s)) {
+        change->wanted *= 2.0;
+    }
     TAKT_ASSERT(change->by > 0.0 && change->rounding_s > 0.0);
 }
 
@@ -143,12 +156,11 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
  * Each of the jerk's terms has a part for itself: a curve that needed all of it for one could not be gone along.
  */
 static float most_of_axis(const struct verifier_need *need, const struct route_slots *slots,
-                          const struct verifier_change *change, unsigned i, float most)
+                          float by, float rounded, unsigned i, float most)
 {
     const float first = need->first[i];
     const float second = need->second[i];
     const float third = need->third[i];
-    const float by = (float)change->by;
 
     if (first * most > slots->velocity_mm_s[i]) {
         most = slots->velocity_mm_s[i] / first;
@@ -163,18 +175,41 @@ static float most_of_axis(const struct verifier_need *need, const struct route_s
     if (3.0f * second * most * by > turning) {
         most = turning / (3.0f * second * by);
     }
-    const float j = single_max(0.0f, LIMIT * slots->jerk_mm_s3[i] - first * (float)change->rounded -
+    const float j = single_max(0.0f, LIMIT * slots->jerk_mm_s3[i] - first * rounded -
                                          3.0f * second * most * by);
 
     return third * most * most * most > j ? takt_single_cbrt(j / third) : most;
 }
 
+/* The highest rate of a piece that may still change by so much. */
+static float most_of_piece(const struct verifier_need *need, const struct route_slots *slots,
+                           float by, float rounding_s)
+{
+    float most = RATE_MAX;
+
+    for (unsigned i = 0; i < slots->count; i++) {
+        most = most_of_axis(need, slots, by, by / rounding_s, i, most);
+    }
+    return most;
+}
+
 void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,
                         const struct verifier_change *change, struct verifier_rate *rate)
 {
-    rate->most = RATE_MAX;
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
+    const float rounding_s = (float)change->rounding_s;
+
+    rate->by = (float)change->by;
+    rate->most = most_of_piece(need, &r->slots, rate->by, rounding_s);
+    const float enough = NEARLY * single_min(1.0f, rate->most);
+
+    while (2.0f * rate->by <= (float)change->wanted) {
+        const float most = most_of_piece(need, &r->slots, 2.0f * rate->by, rounding_s);
+
+        if (most < enough) {
+            break;
+        }
+        rate->by *= 2.0f;
+        rate->most = most;
     }
     TAKT_ASSERT(rate->most >= 0.0f && rate->most <= RATE_MAX);
     rate->programmed = takt_verifier_programmed(need, r, element);
@@ -195,15 +230,16 @@ static float change_of_axis(const struct verifier_need *need, const struct route
 }
 
 float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
-                              const struct verifier_change *change, float rate)
+                              const struct verifier_change *change,
+                              const struct verifier_rate *rate)
 {
     const float rounding_s = (float)change->rounding_s;
-    float by = (float)change->by;
+    const float at = single_min(1.0f, rate->most);
+    float by = rate->by;
     float most = CHANGE_MOST * by;
 
-    TAKT_ASSERT(rate >= 0.0f);
     for (unsigned i = 0; i < r->slots.count; i++) {
-        most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
+        most = change_of_axis(need, &r->slots, rounding_s, i, at, most);
     }
     while (2.0f * by <= most) {
         by *= 2.0f;

@@ -11,11 +11,9 @@ static void set_piece(const struct worth_window *now, unsigned i, struct worth_p
 
     takt_verifier_need(w, now->route, i, &need);
     takt_verifier_rate(&need, now->route, now->route->first + w->paced[i], now->change, &rate);
-    const float most = single_min(1.0f, rate.most);
-
-    p->most[i] = single_min(most, rate.programmed);
-    p->change[i] =
-        2.0f * (float)w->interval_s * takt_verifier_change_on(&need, now->route, now->change, most);
+    p->most[i] = single_min(1.0f, single_min(rate.most, rate.programmed));
+    p->change[i] = 2.0f * (float)w->interval_s *
+                   takt_verifier_change_on(&need, now->route, now->change, &rate);
 }
 
 /*
