@@ -388,7 +388,7 @@ void takt_path_restart(struct path *p, const struct point *at, uint64_t position
 }
 
 /* May it be smoothed together with what is being smoothed? */
-static bool joins_chain(const struct path *p, const struct move *move)
+static bool joins_chain(struct path *p, const struct move *move)
 {
     struct curve curve;
 
@@ -399,7 +399,7 @@ static bool joins_chain(const struct path *p, const struct move *move)
         return false;
     }
     return !takt_move_curve(move, &p->end, &curve) ||
-           (takt_smooth_takes(move, &curve) && takt_smooth_joins(&p->smooth, move));
+           (takt_smooth_takes(move, &curve) && takt_smooth_joins(&p->smooth, move, &curve));
 }
 
 /*
@@ -415,7 +415,7 @@ static void finish_chain(struct path *p)
     const struct move move = p->smooth.merge.move;
     const struct curve line = p->smooth.merge.curve;
 
-    takt_smooth_reset(&p->smooth);
+    takt_smooth_end(&p->smooth);
     close_newest(p);
     p->end = line.start;
     push_motion(p, &move, &line);

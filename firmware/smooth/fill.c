@@ -6,30 +6,30 @@
 #include "base/assert.h"
 #include "smooth/interval.h"
 
-/* How the rate may change: as the axes allow that move on the route. What others do is nothing to it. */
-static void find_change(const struct smooth *s, double interval_s, struct verifier_change *change)
+/* How the rate may change: as these axes allow. What others do is nothing to it. */
+static void find_change(const struct smooth *s, unsigned axes, double interval_s,
+                        struct verifier_change *change)
 {
     struct smooth_limits limits = s->limits;
 
-    limits.axes &= s->route.moved;
+    limits.axes &= axes;
     takt_smooth_limit(&limits, s->route.tolerance_mm);
     takt_verifier_change(&limits, interval_s, change);
 }
 
 /* What merging uses of the tolerance makes no interval shorter. */
-static double find_interval(const struct smooth *s)
+static double find_interval(const struct smooth *s, unsigned axes)
 {
-    return takt_interval_of(&s->limits, &s->route, s->merge.move.tolerance_mm);
+    return takt_interval_of(&s->limits, &s->route, axes, s->merge.move.tolerance_mm);
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
 static void set_interval(struct smooth *s)
 {
-    const double interval_s = find_interval(s);
+    const double interval_s = find_interval(s, s->route.moved);
     TAKT_ASSERT(interval_s > 0.0);
 
-    s->moved = s->route.moved;
-    find_change(s, interval_s, &s->change);
+    find_change(s, s->route.moved, interval_s, &s->change);
     s->route.slots.change_per_s = (float)s->change.wanted;
     s->route.slots.rounded_per_s2 = (float)(s->change.wanted / s->change.rounding_s);
     s->route.chord_per_second =
@@ -84,18 +84,17 @@ static void forget_end(struct smooth *s)
     }
 }
 
-bool takt_fill_needs_other_interval(struct smooth *s)
+bool takt_fill_fits(const struct smooth *s, unsigned axes)
 {
-    const bool more = s->moved != s->route.moved;
     struct verifier_change change;
 
-    s->moved = s->route.moved;
-    if (!more) {
-        return false;
+    if (s->window.count == 0 || (axes & ~s->route.moved) == 0) {
+        return true;
     }
-    find_change(s, s->window.interval_s, &change);
-    return find_interval(s) > s->window.interval_s || change.by < s->change.by ||
-           change.rounding_s > s->change.rounding_s;
+    axes |= s->route.moved;
+    find_change(s, axes, s->window.interval_s, &change);
+    return find_interval(s, axes) <= s->window.interval_s && change.by >= s->change.by &&
+           change.rounding_s <= s->change.rounding_s;
 }
 
 /* Is the route still not known far enough for the place that was tried last? One that has been passed says nothing. */
@@ -116,8 +115,6 @@ bool takt_fill(struct smooth *s)
     if (w->count == 0) {
         set_interval(s);
         takt_window_start(w, &s->route);
-    } else if (s->head.proved == 0 && takt_fill_needs_other_interval(s)) {
-        takt_fill_begin_anew(s);
     }
     forget_end(s);
     const unsigned before = w->count;

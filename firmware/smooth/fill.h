@@ -10,7 +10,7 @@ bool takt_fill(struct smooth *s);
 /* Where the axes stand, and nothing is ready: whatever ends there, a curve may begin anew. */
 void takt_fill_begin_anew(struct smooth *s);
 
-/* Has an axis begun to move whose ramps are longer, or that must change its rate more slowly? */
-bool takt_fill_needs_other_interval(struct smooth *s);
+/* May these axes, by bit, move too: has none of them longer ramps, or must change its rate more slowly? */
+bool takt_fill_fits(const struct smooth *s, unsigned axes);
 
 #endif

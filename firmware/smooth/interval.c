@@ -50,13 +50,13 @@ static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
     return maths_max(curve->cycle_s, soonest);
 }
 
-double takt_interval_of(const struct smooth_limits *machine, const struct route *r,
+double takt_interval_of(const struct smooth_limits *machine, const struct route *r, unsigned axes,
                         double tolerance_mm)
 {
     struct smooth_limits curve = *machine;
 
-    TAKT_ASSERT(r->moved != 0 && tolerance_mm > 0.0);
+    TAKT_ASSERT(axes != 0 && tolerance_mm > 0.0);
     takt_smooth_limit(&curve, r->tolerance_mm);
-    return maths_max(soonest_interval(&curve, r->moved, tolerance_mm),
-                     longest_ramp(machine, r->moved) * WINDOW_OF_RAMP / window_capacity(r));
+    return maths_max(soonest_interval(&curve, axes, tolerance_mm),
+                     longest_ramp(machine, axes) * WINDOW_OF_RAMP / window_capacity(r));
 }

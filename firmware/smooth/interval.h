@@ -7,10 +7,10 @@
 #include "smooth/route.h"
 
 /*
- * What a way of a tolerance takes the quickest of the axes that move on the route, by the limits of its curve; at least a cycle,
- * and so long that none of them needs many windows to reach its velocity. s.
+ * What a way of a tolerance takes the quickest of these axes, by the limits of a curve on the route; at least a cycle, and so long
+ * that none of them needs many windows to reach its velocity. s.
  */
-double takt_interval_of(const struct smooth_limits *machine, const struct route *r,
+double takt_interval_of(const struct smooth_limits *machine, const struct route *r, unsigned axes,
                         double tolerance_mm);
 
 #endif

@@ -84,19 +84,8 @@ static float along_of(const struct curve_bounds *b, const struct route_slots *sl
     return ALONG * along;
 }
 
-/* Axes that move, by bit. */
-static unsigned moved_by(const struct curve_bounds *b)
-{
-    unsigned axes = 0;
-
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        axes |= b->first[i] > 0.0 ? 1U << i : 0U;
-    }
-    return axes;
-}
-
 void takt_nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
-                      struct route *r)
+                      const struct route *r)
 {
     struct curve_bounds b;
 
@@ -107,7 +96,6 @@ void takt_nominal_set(struct route_element *e, const struct curve *curve, float 
     e->along.acceleration = per_mm * along_of(&b, &r->slots, feed);
     e->along.jerk = per_mm * jerk_of(&b, &r->slots);
     TAKT_ASSERT(e->feed_mm_s > 0.0f && e->along.acceleration > 0.0f && e->along.jerk > 0.0f);
-    r->moved |= moved_by(&b);
 }
 
 /*

@@ -7,9 +7,9 @@
 
 #include "smooth/route.h"
 
-/* Feed and acceleration of one element by its programmed feed and its curvature; the axes that it moves. */
+/* Feed and acceleration of one element by its programmed feed and its curvature. */
 void takt_nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
-                      struct route *r);
+                      const struct route *r);
 /* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
 void takt_nominal_update(struct route *r);
 

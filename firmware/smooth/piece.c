@@ -107,6 +107,6 @@ void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
         .last = s->standing == 0 && !s->leaves,
     };
     if (piece->last) {
-        takt_smooth_reset(s);
+        takt_smooth_end(s);
     }
 }

@@ -78,7 +78,7 @@ struct route {
     float
         chord_mm; /* how far the line through setpoints may leave the curve at a corner (limits.h), */
     float chord_per_second; /* and does for c_0 - 2 c_1 + c_2 */
-    unsigned moved;         /* axes of all elements so far, by bit */
+    unsigned moved;         /* axes that the chain moves, as far as is known, by bit */
     double tolerance_mm;
     uint32_t first;                      /* elements forgotten so far */
     uint32_t count;                      /* elements pushed so far */

@@ -1,7 +1,6 @@
 #include "smooth/smooth.h"
 
 #include "base/assert.h"
-#include "base/maths.h"
 #include "smooth/exact.h"
 #include "smooth/fill.h"
 #include "smooth/head.h"
@@ -9,16 +8,12 @@
 #include "smooth/single.h"
 #include "smooth/worth.h"
 
-#include <string.h>
-
 /* Rounds of smoothing and timing a window. A chain's first one begins from nothing. */
 #define ROUNDS       1
 #define ROUNDS_FIRST 4
 
 /* Sixteenths of the window's pieces that are kept each time. */
 #define KEPT_SIXTEENTHS 9U
-/* Lines are merged within this part of the tolerance at most. */
-#define MERGED 0.05
 
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
@@ -35,113 +30,6 @@
 /* What a microcontroller is ready to give for smoothing. */
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
                "too much memory");
-
-void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits)
-{
-    TAKT_ASSERT(limits->cycle_s > 0.0);
-    s->limits = *limits;
-    takt_smooth_reset(s);
-}
-
-void takt_smooth_reset(struct smooth *s)
-{
-    s->open = false;
-    s->finished = false;
-    s->ready = 0;
-    s->taken = 0;
-}
-
-bool takt_smooth_takes(const struct move *move, const struct curve *curve)
-{
-    if (move->path != PATH_BLEND || !(move->tolerance_mm > 0.0)) {
-        return false;
-    }
-    if (move->kind >= MOVE_THREAD || move->feed_rev_mm != 0.0) {
-        return false;
-    }
-    return !takt_curve_starts_at_cusp(curve) && !takt_curve_ends_at_cusp(curve);
-}
-
-bool takt_smooth_joins(const struct smooth *s, const struct move *move)
-{
-    return !s->open || (!s->finished && move->tolerance_mm == s->merge.move.tolerance_mm &&
-                        move->merge_mm == s->merge.move.merge_mm);
-}
-
-bool takt_smooth_has_room(const struct smooth *s)
-{
-    return !s->open || (!s->finished && takt_route_has_room(&s->route));
-}
-
-/* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
-static double merged_within(const struct move *move)
-{
-    return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
-}
-
-/* What merging may use of the tolerance is not there for smoothing. */
-static void begin(struct smooth *s, const struct move *move)
-{
-    const double tolerance_mm = move->tolerance_mm - merged_within(move);
-    struct smooth_limits limits = s->limits;
-
-    TAKT_ASSERT(!s->open && move->tolerance_mm > 0.0);
-    takt_smooth_limit(&limits, tolerance_mm);
-    takt_route_init(&s->route, &limits, tolerance_mm);
-    s->window.count = 0;
-    s->open = true;
-    s->ready = 0;
-    s->taken = 0;
-    s->told = 0;
-    s->proved = 0;
-    s->stops = false;
-    s->exact = false;
-    s->since = (struct worth_since){.element = 0};
-    s->starts = true;
-    s->standing = 0;
-    takt_order_start(&s->order, 0.0, 0);
-    s->known_mm = 0.0;
-    s->tried_mm = 0.0;
-    s->tried = 0;
-    s->merge.open = false;
-}
-
-/* The newest line will not grow any more. */
-static void close_merge(struct smooth *s)
-{
-    if (s->merge.open) {
-        takt_route_push(&s->route, &s->merge.move, s->merge.number, &s->merge.curve);
-        s->merge.open = false;
-    }
-}
-
-void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number,
-                      const struct curve *curve)
-{
-    TAKT_ASSERT(takt_smooth_has_room(s) && takt_smooth_joins(s, move));
-    if (!s->open) {
-        begin(s, move);
-    }
-    if (takt_merge_take(&s->merge, move, number, curve, merged_within(move))) {
-        return;
-    }
-    close_merge(s);
-    takt_merge_open(&s->merge, move, number, curve);
-}
-
-bool takt_smooth_is_line(const struct smooth *s)
-{
-    return s->open && !s->finished && s->merge.open && s->merge.curve.kind == CURVE_LINE &&
-           s->merge.points == 0 && s->route.count == 0;
-}
-
-void takt_smooth_finish(struct smooth *s)
-{
-    if (s->open) {
-        close_merge(s);
-        s->finished = true;
-    }
-}
 
 static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, double part)
 {
@@ -321,7 +209,7 @@ static void choose(struct smooth *s, union smooth_scratch *scratch)
 
     if (path) {
         take_path(s, to_mm);
-    } else if (!now.starts && (is_stuck(s) || slower || takt_fill_needs_other_interval(s))) {
+    } else if (!now.starts && (is_stuck(s) || slower)) {
         fall_back(s);
     }
 }
@@ -407,7 +295,7 @@ static void end_element(struct smooth *s)
 
     TAKT_ASSERT(w->element[0] < s->route.count);
     if (next == s->route.count) {
-        takt_smooth_reset(s);
+        takt_smooth_end(s);
         return;
     }
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {

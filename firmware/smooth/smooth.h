@@ -64,6 +64,7 @@ union smooth_scratch {
 
 struct smooth {
     struct smooth_limits limits;
+    unsigned expected; /* axes that the next chain moves, by bit */
     /* from here to change nothing is kept while no chain is open */
     struct route route;
     struct window window;
@@ -74,7 +75,6 @@ struct smooth {
         order; /* where the pieces that are ready end; before there are any, where the window begins */
     struct move move; /* of the piece taken last, */
     uint32_t told;    /* and its element: the latest one of the pieces taken */
-    unsigned moved;   /* axes for which the interval was chosen, by bit */
     unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
     double known_mm;  /* end of the route when the window was filled */
     double tried_mm;  /* place its last sample had when the route was not known far enough yet, */
@@ -99,8 +99,8 @@ struct smooth {
 void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits);
 /* May this motion be part of a smooth chain? */
 bool takt_smooth_takes(const struct move *move, const struct curve *curve);
-/* May it join the chain that is open? True when none is. */
-bool takt_smooth_joins(const struct smooth *s, const struct move *move);
+/* May it join the chain that is open? True when none is. False: the next chain is expected to begin with it. */
+bool takt_smooth_joins(struct smooth *s, const struct move *move, const struct curve *curve);
 bool takt_smooth_has_room(const struct smooth *s);
 /* Appends a motion. Needs room and takt_smooth_joins(). */
 void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number,
@@ -117,6 +117,8 @@ void takt_smooth_finish(struct smooth *s);
  */
 enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scratch,
                                    struct smooth_piece *piece, struct curve *curve);
+/* Forgets the chain. */
+void takt_smooth_end(struct smooth *s);
 /* Forgets everything. */
 void takt_smooth_reset(struct smooth *s);
 

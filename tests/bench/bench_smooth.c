@@ -142,7 +142,7 @@ static void push(const struct move *move, uint32_t number, const struct curve *c
         finish(yield);
         return;
     }
-    if (!takt_smooth_joins(&smooth, move)) {
+    if (!takt_smooth_joins(&smooth, move, curve)) {
         finish(yield);
     }
     while (!takt_smooth_has_room(&smooth)) {

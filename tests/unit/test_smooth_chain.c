@@ -1,0 +1,146 @@
+/* Which motions a chain takes in: one interval serves all of it. */
+#include "smooth/smooth.h"
+
+#include <string.h>
+#include <unity.h>
+
+#define TOLERANCE_MM 0.01
+
+/* Z takes twenty times as long to its velocity as the others. */
+static const struct smooth_limits mill = {
+    .axes = 7,
+    .velocity_mm_s = {100.0, 100.0, 100.0},
+    .acceleration_mm_s2 = {1000.0, 1000.0, 50.0},
+    .jerk_mm_s3 = {50000.0, 50000.0, 2500.0},
+    .cycle_s = 1e-3,
+    .windows = 1.0,
+};
+
+static struct smooth smooth;
+static union smooth_scratch scratch;
+static struct point at;
+static struct move move;
+static struct curve curve;
+
+void setUp(void)
+{
+    takt_smooth_init(&smooth, &mill);
+    memset(&at, 0, sizeof at);
+}
+
+void tearDown(void)
+{
+}
+
+static void take_all(void)
+{
+    struct smooth_piece piece;
+    struct curve taken;
+
+    while (takt_smooth_take(&smooth, &scratch, &piece, &taken) != SMOOTH_NONE) {
+    }
+}
+
+/* By so much from where the last one pushed has come to. */
+static void set_line(enum axis axis, double by_mm)
+{
+    move = (struct move){.kind = MOVE_FEED,
+                         .path = PATH_BLEND,
+                         .feed_mm_s = 100.0,
+                         .tolerance_mm = TOLERANCE_MM,
+                         .end = at};
+    move.end.at[axis] += by_mm;
+    TEST_ASSERT_TRUE(takt_curve_set_line(&curve, &at, &move.end));
+}
+
+static bool joins(enum axis axis)
+{
+    set_line(axis, 1.0);
+    return takt_smooth_joins(&smooth, &move, &curve);
+}
+
+static void push(enum axis axis, double by_mm)
+{
+    set_line(axis, by_mm);
+    while (!takt_smooth_has_room(&smooth)) {
+        take_all();
+    }
+    takt_smooth_push(&smooth, &move, 1, &curve);
+    take_all();
+    at = move.end;
+}
+
+static void go_around(unsigned times)
+{
+    for (unsigned i = 0; i < times; i++) {
+        push(AXIS_X, 10.0);
+        push(AXIS_Y, 10.0);
+        push(AXIS_X, -10.0);
+        push(AXIS_Y, -10.0);
+    }
+}
+
+static void end_chain(void)
+{
+    takt_smooth_finish(&smooth);
+    take_all();
+    TEST_ASSERT_FALSE(smooth.open);
+}
+
+static void test_an_axis_that_needs_a_longer_interval_does_not_join_a_chain_that_has_begun(void)
+{
+    go_around(10);
+    TEST_ASSERT_FALSE(joins(AXIS_Z));
+    TEST_ASSERT_TRUE(joins(AXIS_X));
+}
+
+static void test_axes_that_are_known_before_the_first_piece_share_one_chain(void)
+{
+    push(AXIS_X, 1.0);
+    TEST_ASSERT_TRUE(joins(AXIS_Z));
+    push(AXIS_Z, 1.0);
+    go_around(10);
+    TEST_ASSERT_TRUE(joins(AXIS_Z));
+}
+
+static void test_the_next_chain_serves_the_axes_of_both(void)
+{
+    go_around(10);
+    const double before_s = smooth.window.interval_s;
+
+    TEST_ASSERT_FALSE(joins(AXIS_Z));
+    end_chain();
+    go_around(10);
+    TEST_ASSERT_TRUE(smooth.window.interval_s > 2.0 * before_s);
+    TEST_ASSERT_TRUE(joins(AXIS_Z));
+}
+
+static void test_a_chain_that_ends_by_itself_leaves_no_axes_to_the_next(void)
+{
+    push(AXIS_X, 1.0);
+    push(AXIS_Z, 1.0);
+    go_around(10);
+    end_chain();
+    go_around(10);
+    TEST_ASSERT_FALSE(joins(AXIS_Z));
+}
+
+static void test_after_a_reset_no_axes_are_expected(void)
+{
+    go_around(10);
+    TEST_ASSERT_FALSE(joins(AXIS_Z));
+    takt_smooth_reset(&smooth);
+    go_around(10);
+    TEST_ASSERT_FALSE(joins(AXIS_Z));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_an_axis_that_needs_a_longer_interval_does_not_join_a_chain_that_has_begun);
+    RUN_TEST(test_axes_that_are_known_before_the_first_piece_share_one_chain);
+    RUN_TEST(test_the_next_chain_serves_the_axes_of_both);
+    RUN_TEST(test_a_chain_that_ends_by_itself_leaves_no_axes_to_the_next);
+    RUN_TEST(test_after_a_reset_no_axes_are_expected);
+    return UNITY_END();
+}
