@@ -1,7 +1,6 @@
 #include "smooth/exact.h"
 
 #include "smooth/exact_parts.h"
-#include "smooth/route_curved.h"
 #include "smooth/single.h"
 
 /* In single precision. */
@@ -113,9 +112,9 @@ struct arc_limits {
     float radius;
 };
 
-/* What axes may do along it: one in its plane may have all for itself, others but their part of it. */
-static float most_along(const struct route *r, const double by_axis[], uint32_t index,
-                        const float k[])
+/* An axis in its plane may have all of the acceleration for itself, others but their part of it. */
+static float acceleration_along(const struct route *r, const struct smooth_limits *machine,
+                                uint32_t index, const float k[])
 {
     float d[AXIS_COUNT];
     float most = SINGLE_INFINITY;
@@ -123,9 +122,9 @@ static float most_along(const struct route *r, const double by_axis[], uint32_t 
     (void)takt_route_direction(r, index, route_element(r, index)->start_mm, d);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float part = k[i] != 0.0f ? 1.0f : single_abs(d[i]);
-        const float all = r->slots.weight[i] * (float)by_axis[r->slots.axis[i]];
+        const float a = r->slots.weight[i] * (float)machine->acceleration_mm_s2[r->slots.axis[i]];
 
-        most = part > 0.0f ? single_min(most, all / part) : most;
+        most = part > 0.0f ? single_min(most, a / part) : most;
     }
     return most;
 }
@@ -190,12 +189,9 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
     const float curvature = takt_route_curvature(r, index, e->start_mm, k); /* k is used below */
     const struct arc_limits b = {.jerk = (joined ? 1.0f - junction_share : 1.0f) * e->along.jerk,
                                  .radius = 1.0f / curvature,
-                                 .acceleration =
-                                     most_along(r, machine->acceleration_mm_s2, index, k)};
+                                 .acceleration = acceleration_along(r, machine, index, k)};
     const float most = hold_time_on_line(r, machine);
 
-    c->feed = single_min(takt_route_per_mm(r, index) * e->programmed_mm_s,
-                         most_along(r, machine->velocity_mm_s, index, k));
     c->feed = single_min(c->feed, takt_single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
     c->feed = single_min(c->feed, single_sqrt(arc_acceleration * b.acceleration * b.radius));
     for (unsigned i = 0; i < SLOWER_MAX && hold_time(&b, c->feed, (float)machine->windows) > most;

@@ -164,7 +164,8 @@ void takt_window_rest(struct window *w, const struct route *r, const struct orde
     const double on = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
     const double at = takt_order_place(order, maths_min(on, route_end_of(r, w->element[1])));
     const uint32_t found = takt_route_find(r, at, w->element[1]);
-    const uint32_t element = found < w->element[1] ? found : w->element[1];
+    const bool elsewhere = found < w->element[1] || at > route_end_of(r, w->element[1]);
+    const uint32_t element = elsewhere ? found : w->element[1];
     double p[3][AXIS_COUNT];
 
     TAKT_ASSERT(w->count >= SMOOTH_FIXED && order->count > 0);

@@ -53,6 +53,8 @@ static uint32_t next_rest(const struct worth_window *now, uint32_t element)
 /* A rest that the curve has passed: the start of an element, when, and how fast; and when those that are kept end. */
 struct passed {
     uint32_t element;
+    float time;
+    float feed;
     float kept;
     float rate; /* there */
     float stop; /* r/2r': what coming to rest where they begin takes longer than to go on */
@@ -89,8 +91,26 @@ static float go(const struct worth_window *now, float from, struct passed *last)
         while (next < now->route->count &&
                route_element(now->route, next)->start_mm <= w->at_mm[i + 2]) {
             last->element = next;
+            last->time = time;
+            last->feed = (float)(w->at_mm[i + 2] - w->at_mm[i + 1]) / takes;
             next = next_rest(now, next);
         }
+    }
+    return time;
+}
+
+/* Time of a stretch at its nominal feed: neither a curve nor the path is quicker. */
+static float time_between(const struct worth_window *now, uint32_t element, double from_mm,
+                          double to_mm)
+{
+    const struct route *r = now->route;
+    float time = 0.0f;
+
+    for (uint32_t i = element; i < r->count && from_mm < to_mm; i++) {
+        const double end_mm = maths_min(route_end_of(r, i), to_mm);
+
+        time += (float)(maths_max(end_mm, from_mm) - from_mm) / route_element(r, i)->feed_mm_s;
+        from_mm = maths_max(end_mm, from_mm);
     }
     return time;
 }
@@ -125,93 +145,16 @@ static float path_time(const struct worth_window *now, uint32_t first)
                         (float)(at_mm - start_mm) / length);
 }
 
-/* A stretch of one element: how far, how fast it may be gone along, and at what acceleration feeds rise and fall. */
-struct stretch {
-    float length;
-    float feed;
-    float acceleration;
-};
-
-/* On the average, with jerk: v/(v/a + a/j), or sqrt(v j)/2 where a is not reached. */
-static struct stretch stretch_of(const struct worth_window *now, uint32_t element)
+/* What all rests ahead cost it, beyond its way at the nominal feed. */
+static float time_of_rests(const struct worth_window *now)
 {
-    const struct route *r = now->route;
-    const struct route_element *e = route_element(r, element);
-    const double from_mm = maths_max(now->window->at_mm[0], e->start_mm);
-    const float v = e->feed_mm_s;
-    const float a = single_min(e->along.acceleration, single_sqrt(v * e->along.jerk));
-
-    return (struct stretch){.length = (float)(route_end_of(r, element) - from_mm),
-                            .feed = v,
-                            .acceleration = v / (v / a + a / e->along.jerk)};
-}
-
-static float reached_over(float from, const struct stretch *s)
-{
-    return single_sqrt(from * from + 2.0f * s->acceleration * s->length);
-}
-
-/* Nominal feeds where elements begin, from rest to rest at the end of what is known. */
-static void find_feeds(const struct worth_window *now)
-{
-    const struct route *r = now->route;
-    const uint32_t first = now->window->element[0];
-    float *feed = now->pace->feed;
-    float next = 0.0f;
-
-    for (uint32_t i = r->count; i > first; i--) {
-        const struct stretch s = stretch_of(now, i - 1);
-
-        feed[i - first] = next;
-        next = i - 1 == first
-                   ? 0.0f
-                   : single_min(route_element(r, i - 1)->start_mm_s, reached_over(next, &s));
-    }
-    feed[0] = 0.0f;
-    for (uint32_t i = first; i < r->count; i++) {
-        const struct stretch s = stretch_of(now, i);
-
-        feed[i + 1 - first] = single_min(feed[i + 1 - first], reached_over(feed[i - first], &s));
-    }
-}
-
-/* Time of the first part of a stretch: the feed rises, stays the highest, and falls. */
-static float time_over(const struct stretch *s, float from, float to, float way)
-{
-    const float a = s->acceleration;
-    const float peak =
-        single_min(s->feed, single_sqrt(a * s->length + 0.5f * (from * from + to * to)));
-    const float rises = 0.5f * (peak * peak - from * from) / a;
-    const float falls = 0.5f * (peak * peak - to * to) / a;
-
-    if (way < rises) {
-        return (single_sqrt(from * from + 2.0f * a * way) - from) / a;
-    }
-    const float rest = single_max(0.0f, s->length - way);
-    const float cruise = single_max(0.0f, s->length - rises - single_max(falls, rest));
-    const float slowed = rest < falls ? (peak - single_sqrt(to * to + 2.0f * a * rest)) / a : 0.0f;
-
-    return (peak - from) / a + cruise / peak + slowed;
-}
-
-/* What the nominal feed takes to a place. */
-static float nominal_time(const struct worth_window *now, double to_mm)
-{
-    const struct route *r = now->route;
-    const uint32_t first = now->window->element[0];
-    const double from_mm = now->window->at_mm[0];
-    const float *feed = now->pace->feed;
+    uint32_t rest = next_rest(now, now->window->element[0]);
     float time = 0.0f;
 
-    for (uint32_t i = first; i < r->count; i++) {
-        const struct stretch s = stretch_of(now, i);
-        const double start_mm = maths_max(from_mm, route_element(r, i)->start_mm);
-
-        if (to_mm <= start_mm) {
-            break;
-        }
-        time += time_over(&s, feed[i - first], feed[i + 1 - first],
-                          single_min(s.length, (float)(to_mm - start_mm)));
+    while (rest < now->route->count) {
+        time += ramp(now, rest - 1, route_element(now->route, rest - 1)->feed_mm_s) +
+                ramp(now, rest, route_element(now->route, rest)->feed_mm_s);
+        rest = next_rest(now, rest);
     }
     return time;
 }
@@ -219,30 +162,42 @@ static float nominal_time(const struct worth_window *now, double to_mm)
 /* A curve takes up to so many times what its pieces seem to take: of 1,200 random programs most are within it. */
 #define LONGER 1.04f
 
+/* Is the path quicker on all that is known, if the curve takes as much of its time there as on a stretch of it? */
+static bool is_quicker_on(const struct worth_window *now, float curve, float path)
+{
+    const float all = takt_exact_time(now->route, now->machine, now->window->at_mm[0],
+                                      now->window->element[0], now->route->count);
+
+    return all < (now->finished ? 2.0f : 1.0f) * now->rest_s + LONGER * curve / path * all;
+}
+
 bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
 {
     const struct window *w = now->window;
     const struct route *r = now->route;
-    const double end_mm = takt_route_end(r);
-    const double at_mm = w->at_mm[now->pieces + 1];
+    const double at_mm = w->at_mm[0];
     struct passed last;
-    const float time = go(now, 1.0f, &last) - now->rest_s;
-    const float path = takt_exact_time(r, now->machine, w->at_mm[0], w->element[0], r->count);
-    const float rests = (now->finished ? 2.0f : 1.0f) * now->rest_s;
+    const float time = go(now, 1.0f, &last);
 
-    *to_mm = end_mm;
-    if (at_mm == end_mm) {
-        return path < time + rests;
+    *to_mm = takt_route_end(r);
+    if (now->finished) {
+        const double end_mm = w->at_mm[now->pieces + 1];
+        const bool quicker =
+            takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
+            time + now->rest_s + time_between(now, w->element[now->pieces + 1], end_mm, *to_mm);
+
+        if (quicker || end_mm == *to_mm) {
+            return quicker;
+        }
     }
-    find_feeds(now);
-    if (last.element < r->count) {
-        *to_mm = route_element(r, last.element)->start_mm;
-    } else if (!now->finished) {
-        /* where the path rests is not known yet: it goes on beyond what is compared */
-        return path * nominal_time(now, at_mm) < time * nominal_time(now, end_mm);
+    *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
+    if (last.time > 0.0f) {
+        return is_quicker_on(now, time - now->rest_s, path_time(now, w->element[0]));
     }
-    /* what the curve takes on all, if it takes as much of the nominal time there as on its pieces */
-    return (path - rests) * nominal_time(now, at_mm) < LONGER * time * nominal_time(now, end_mm);
+    const float gained = now->finished ? time_of_rests(now) - now->rest_s : now->rest_s;
+
+    return path_time(now, w->element[0]) + gained < time ||
+           takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
 }
 
 /*

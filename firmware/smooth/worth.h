@@ -13,8 +13,6 @@ struct worth_pace {
     float change[SMOOTH_SAMPLES_MAX]; /* by how much its square may change there, */
     float at[SMOOTH_SAMPLES_MAX +
              1]; /* and what it is where each begins, and where the last one ends */
-    float feed[SMOOTH_ELEMENTS_MAX +
-               1]; /* nominal one at the start of each element, and at the end */
 };
 
 /* The first pieces of a window. */
