@@ -50,11 +50,10 @@ static uint32_t next_rest(const struct worth_window *now, uint32_t element)
     return i;
 }
 
-/* A rest that the curve has passed: the start of an element, when, and how fast; and when those that are kept end. */
+/* A rest that the curve has passed: the start of an element, and when; and when those that are kept end. */
 struct passed {
     uint32_t element;
     float time;
-    float feed;
     float kept;
     float rate; /* there */
     float stop; /* r/2r': what coming to rest where they begin takes longer than to go on */
@@ -92,7 +91,6 @@ static float go(const struct worth_window *now, float from, struct passed *last)
                route_element(now->route, next)->start_mm <= w->at_mm[i + 2]) {
             last->element = next;
             last->time = time;
-            last->feed = (float)(w->at_mm[i + 2] - w->at_mm[i + 1]) / takes;
             next = next_rest(now, next);
         }
     }
