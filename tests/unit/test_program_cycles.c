@@ -76,6 +76,17 @@ static void test_too_many_cuts_are_a_mistake(void)
     reader_expect_error(&reader, TAKT_ERROR_CYCLE_TOO_LONG);
 }
 
+/* The first cut is at X 499.7, the last one at 500.5, beyond the end of travel. */
+static void test_the_last_cut_of_a_thread_is_looked_at_before_the_first(void)
+{
+    reader_open(&reader, "M3 S100\nG0 X498\nG76 P1 Z-5 I1.5 J0.2 K1\nG0 X1");
+    (void)reader_next(&reader, MOVE_SPINDLE);
+    reader_expect_rapid(&reader, 498.0, 0.0, 0.0);
+    reader_expect_error(&reader, TAKT_ERROR_TRAVEL_EXCEEDED);
+    TEST_ASSERT_EQUAL_DOUBLE(500.5, reader.diagnostic.value);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
+}
+
 /* Travel ends at 500; the sixth of the holes would be at 510. Nothing of the line moves. */
 static void test_the_last_hole_is_looked_at_before_the_first(void)
 {
@@ -198,6 +209,7 @@ int main(void)
     RUN_TEST(test_no_number_of_pecks_needs_room);
     RUN_TEST(test_too_many_pecks_are_a_mistake);
     RUN_TEST(test_too_many_cuts_are_a_mistake);
+    RUN_TEST(test_the_last_cut_of_a_thread_is_looked_at_before_the_first);
     RUN_TEST(test_the_last_hole_is_looked_at_before_the_first);
     RUN_TEST(test_a_line_with_an_error_leaves_the_cycle_as_it_was);
     RUN_TEST(test_the_end_of_the_line_waits_for_the_cycle);

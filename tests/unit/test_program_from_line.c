@@ -169,6 +169,7 @@ static void test_nobody_starts_at_a_place_out_of_the_travel(void)
     open_at(4, "F100 G42.1 D10 G1 X20 Y503\nX40\nG40\nX60\n");
     reader_expect_error(&reader, TAKT_ERROR_TRAVEL_EXCEEDED);
     TEST_ASSERT_EQUAL_UINT(4, reader.diagnostic.line);
+    TEST_ASSERT_EQUAL_UINT(0, reader.diagnostic.column); /* no word of the line leads there */
     TEST_ASSERT_EQUAL_STRING("Y", reader.diagnostic.word);
     TEST_ASSERT_EQUAL_INT(
         PROGRAM_END, takt_program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
