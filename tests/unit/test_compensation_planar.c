@@ -208,6 +208,35 @@ static void test_distances_between_ways(void)
     TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, takt_planar_distance_point(&below, inside));
 }
 
+/* Of the circle with radius 1 about (x, 0), between two unrolled angles, with its string along Y = 1 at a third one. */
+static struct planar involute(double x, int8_t hand, double from, double to, double along)
+{
+    struct planar c = {.centre = {x, 0.0}, .base_mm = 1.0, .involute = true, .hand = hand};
+    double *const end[2] = {c.from, c.to};
+    const double phi[2] = {from, to};
+
+    c.heading_rad = MATHS_HALF_PI - hand * along;
+    c.unrolled_from = from;
+    c.unrolled_to = to;
+    for (unsigned i = 0; i < 2; i++) {
+        const double t = c.heading_rad + hand * phi[i];
+
+        end[i][0] = x + takt_maths_cos(t) + hand * phi[i] * takt_maths_sin(t);
+        end[i][1] = takt_maths_sin(t) - hand * phi[i] * takt_maths_cos(t);
+    }
+    return c;
+}
+
+/* Strings of 3 and 4 mm from (0, 1) and (10, 1) towards each other leave 3 mm. */
+static void test_two_involutes_are_nearest_on_the_tangent_of_both_base_circles(void)
+{
+    const struct planar a = involute(0.0, 1, 2.0, 4.0, 3.0);
+    const struct planar b = involute(10.0, -1, 3.0, 5.0, 4.0);
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0, takt_planar_distance(&a, &b));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0, takt_planar_distance(&b, &a));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -223,5 +252,6 @@ int main(void)
     RUN_TEST(test_the_ends_of_a_full_circle_are_told_apart);
     RUN_TEST(test_a_cut_arc_is_shorter_by_what_was_cut);
     RUN_TEST(test_distances_between_ways);
+    RUN_TEST(test_two_involutes_are_nearest_on_the_tangent_of_both_base_circles);
     return UNITY_END();
 }

@@ -350,6 +350,19 @@ static void test_a_second_contour_may_follow_without_a_move_between(void)
     expect_end();
 }
 
+/* Beside (40, 0), at (40, 5), the tool stays: the next entry goes from there along X. */
+static void test_a_contour_behind_a_tool_change_begins_where_the_tool_stands(void)
+{
+    open_text("G41.1 D10\nG1 X20 F60\nX40\nG40\nT5 M6\nG41.1 D10\nX60\nG40 X80\n");
+    (void)expect(MOVE_FEED, 20.0, 5.0, 0.0);
+    (void)expect(MOVE_FEED, 40.0, 5.0, 0.0);
+    expect_kind(MOVE_TOOL);
+    expect_kind(MOVE_TOOL);
+    (void)expect(MOVE_FEED, 60.0, 10.0, 0.0);
+    (void)expect(MOVE_FEED, 80.0, 5.0, 0.0);
+    expect_end();
+}
+
 static void test_sharp_corners_stand_off_by_no_more_than_a_right_angle_gives(void)
 {
     reader_prepare(&reader);
@@ -476,6 +489,7 @@ int main(void)
     RUN_TEST(test_reading_goes_on_behind_a_faulty_contour);
     RUN_TEST(test_an_error_of_the_program_comes_after_the_moves_before_it);
     RUN_TEST(test_a_second_contour_may_follow_without_a_move_between);
+    RUN_TEST(test_a_contour_behind_a_tool_change_begins_where_the_tool_stands);
     RUN_TEST(test_sharp_corners_stand_off_by_no_more_than_a_right_angle_gives);
     RUN_TEST(test_a_rapid_goes_around_an_outer_corner_in_lines);
     RUN_TEST(test_a_corner_by_rounding_is_no_corner);
