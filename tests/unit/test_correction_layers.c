@@ -82,6 +82,21 @@ static void test_thermal_growth_of_fifteen_kelvin_is_taken_back(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 11e-6 * 15 * 50, settle(0, 0, 0, 0).at[AXIS_Y]);
 }
 
+/* 30 K at the farthest place; switched, it fades at that size times the highest rate of a fade. */
+static void test_the_need_of_thermal_growth_is_that_of_thirty_kelvin(void)
+{
+    const struct motion_bound most = {.farthest_mm = {500, 400, 300}};
+    struct need need;
+
+    settings.thermal_per_k[AXIS_Y] = -11e-6;
+    begin(NULL);
+    takt_correction_get_need(&c, &most, &need);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, need.size_mm[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 11e-6 * 30 * 400, need.size_mm[AXIS_Y]);
+    TEST_ASSERT_TRUE(need.velocity_mm_s[AXIS_Y] >
+                     need.size_mm[AXIS_Y] * takt_fade_velocity_per_s(&c.layer_pace));
+}
+
 static void test_backlash_follows_the_direction_of_the_last_motion(void)
 {
     make_axis_table(AXIS_X, AXIS_X, 10, -10);
@@ -308,6 +323,7 @@ int main(void)
     RUN_TEST(test_a_diagonal_matrix_takes_back_a_pitch_error);
     RUN_TEST(test_the_matrix_is_composed_of_machine_workpiece_and_overhang);
     RUN_TEST(test_thermal_growth_of_fifteen_kelvin_is_taken_back);
+    RUN_TEST(test_the_need_of_thermal_growth_is_that_of_thirty_kelvin);
     RUN_TEST(test_backlash_follows_the_direction_of_the_last_motion);
     RUN_TEST(test_a_reversal_fades_within_the_need);
     RUN_TEST(test_a_worn_tool_is_followed_along_and_across);
