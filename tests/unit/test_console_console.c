@@ -318,6 +318,16 @@ static void test_offsets_are_told_and_set_to_zero(void)
     ask("$#", "[G55:0.000,0.000,0.000]\r\n");
 }
 
+static void test_reports_in_inches_have_four_decimals(void)
+{
+    ask("G10 L2 P2 X25.4 Y-1", "ok");
+    settle();
+    ask("$13=1", "ok");
+    ask("$#", "[G55:1.0000,-0.0394,0.0000]\r\n");
+    ask("$13=0", "ok");
+    ask("$#", "[G55:25.400,-1.000,0.000]\r\n");
+}
+
 static void test_modes_are_told_word_by_word(void)
 {
     ask("$G", "[GC:G80 G54 G17 G21 G90 G94 G61 M5 M9 T0 F0 S0]\r\n");
@@ -341,6 +351,15 @@ static void test_homing_is_answered_when_the_axes_are_there(void)
     ask("$H", "ok");
     TEST_ASSERT_EQUAL_DOUBLE(0.0, place(AXIS_X));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, place(AXIS_Y));
+}
+
+/* More text is waited for 0.1 s; none can come before the answer to this line. */
+static void test_a_line_that_needs_rest_does_not_wait_for_more_text(void)
+{
+    forget();
+    give("G4 P0.01\n$SLP\n");
+    steps(50);
+    TEST_ASSERT_EQUAL_UINT(2, count_of("ok\r\n"));
 }
 
 static void test_sleep_ends_by_a_reset(void)
@@ -463,8 +482,10 @@ int main(void)
     RUN_TEST(test_settings_are_read_and_only_those_of_reports_are_set);
     RUN_TEST(test_it_tells_what_it_has_been_built_with_in_the_letters_of_grbl);
     RUN_TEST(test_offsets_are_told_and_set_to_zero);
+    RUN_TEST(test_reports_in_inches_have_four_decimals);
     RUN_TEST(test_modes_are_told_word_by_word);
     RUN_TEST(test_homing_is_answered_when_the_axes_are_there);
+    RUN_TEST(test_a_line_that_needs_rest_does_not_wait_for_more_text);
     RUN_TEST(test_sleep_ends_by_a_reset);
     RUN_TEST(test_while_another_panel_has_control_the_sender_may_only_hold);
     RUN_TEST(test_an_emergency_stop_by_anyone_is_an_alarm);
