@@ -1,17 +1,38 @@
 /* The source's feed: S-curve, diagram of a block with kl, limiter of axis velocities. By hand, and by sums. */
 #include "classic/diagram.h"
 #include "classic/limiter.h"
+#include "classic/product.h"
 #include "classic/s_curve.h"
 
 #include "base/maths.h"
+#include "motion/handover.h"
 
 #include <string.h>
 #include <unity.h>
 
 #define CYCLE_S 1e-3
 
+static const struct plan_limits mill = {
+    7,       {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000},
+    CYCLE_S, CYCLE_S,         RAMP_PROFILE_JERK,  LANDING_SCALE};
+
+static struct path path;
+static struct motion motion;
+static struct product product;
+static struct motion_operator asked;
+static struct cycle_record record;
+
 void setUp(void)
 {
+    const struct product_config config = {.limiter = LIMITER_CEILING, .cycle_s = CYCLE_S};
+    const struct point start = {{0}};
+
+    takt_path_init(&path, &mill, &start);
+    takt_motion_init(&motion, &path, &start, false);
+    takt_handover_allow_all(&motion);
+    takt_product_init(&product, &config);
+    record = (struct cycle_record){0};
+    asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
 }
 
 void tearDown(void)
@@ -186,6 +207,97 @@ static void test_the_least_factor_of_the_axes_counts(void)
     TEST_ASSERT_TRUE(takt_limiter_factor(LIMITER_SMOOTH, &velocity, most, wide_x) < 50.0 / 60.0);
 }
 
+/* Along X, at 100 mm/s. */
+static void push(double x)
+{
+    const struct move m = {.kind = MOVE_FEED,
+                           .end = {{x}},
+                           .feed_mm_s = 100.0,
+                           .overrides = OVERRIDE_FEED | OVERRIDE_HOLD,
+                           .turns = 1};
+
+    takt_path_push(&path, &m);
+}
+
+static void push_end(void)
+{
+    const struct move m = {.kind = MOVE_END};
+
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
+}
+
+static void cycle(void)
+{
+    if (takt_motion_wanted(&motion) != NULL) {
+        takt_path_go_on(&path);
+        takt_motion_build(&motion);
+    }
+    if (takt_motion_cycle(&motion, &asked, &record) == MOTION_HANDED_OVER) {
+        takt_product_cycle(&product, &motion, &asked, &record);
+    }
+}
+
+static void run_to(double x)
+{
+    for (unsigned i = 0; i < 10000 && record.cmd.at[AXIS_X] < x; i++) {
+        cycle();
+    }
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] >= x);
+}
+
+/* 50 mm/s fewer at 1000 mm/s2 and 50000 mm/s3: 0.05 s + 0.02 s. */
+static void test_the_override_changes_feed_by_the_limits_of_the_block(void)
+{
+    unsigned cycles = 0;
+
+    push(300.0);
+    push_end();
+    run_to(50.0);
+    asked.feed_ratio = 0.5;
+    while (cycles < 1000 && record.override_percent != 50.0) {
+        const double before = record.feed_mm_s;
+
+        cycle();
+        cycles++;
+        TEST_ASSERT_TRUE(before - record.feed_mm_s <= 1.001 * 1000.0 * CYCLE_S);
+    }
+    TEST_ASSERT_UINT_WITHIN(1, 70, cycles);
+}
+
+/* Braking begins at 44: the override has got 3 mm on its way by then, and stands still. */
+static void test_behind_a_stop_the_override_is_at_once_as_wanted(void)
+{
+    push(50.0);
+    push(0.0);
+    push_end();
+    run_to(41.0);
+    asked.feed_ratio = 0.5;
+    run_to(50.0);
+    TEST_ASSERT_TRUE(record.override_percent > 60.0);
+    for (unsigned i = 0; i < 10 && record.cmd.at[AXIS_X] == 50.0; i++) {
+        cycle();
+    }
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] < 50.0);
+    for (unsigned i = 0; i < 100; i++) {
+        TEST_ASSERT_EQUAL_DOUBLE(50.0, record.override_percent);
+        cycle();
+    }
+}
+
+/* From 10 mm/s to rest at 50000 mm/s3 takes 2 sqrt(10 / 50000) s, at 5 mm/s in the mean. */
+static void test_the_end_of_what_is_known_is_taken_for_a_stop(void)
+{
+    const double way = 10.0 * maths_sqrt(10.0 / 50000.0);
+
+    push(100.0);
+    push(100.0 + way);
+    push(200.0);
+    run_to(50.0);
+    TEST_ASSERT_EQUAL_UINT(2, path.closed - path.first);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 10.0, product.diagram.end_mm_s);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -200,5 +312,8 @@ int main(void)
     RUN_TEST(test_at_the_limit_the_smooth_form_takes_three_sixteenths_of_its_band);
     RUN_TEST(test_a_band_without_width_is_a_threshold);
     RUN_TEST(test_the_least_factor_of_the_axes_counts);
+    RUN_TEST(test_the_override_changes_feed_by_the_limits_of_the_block);
+    RUN_TEST(test_behind_a_stop_the_override_is_at_once_as_wanted);
+    RUN_TEST(test_the_end_of_what_is_known_is_taken_for_a_stop);
     return UNITY_END();
 }
