@@ -20,7 +20,7 @@ static void find_change(const struct smooth *s, unsigned axes, double interval_s
 /* What merging uses of the tolerance makes no interval shorter. */
 static double find_interval(const struct smooth *s, unsigned axes)
 {
-    return takt_interval_of(&s->limits, &s->route, axes, s->merge.move.tolerance_mm);
+    return takt_interval_of(&s->limits, &s->route, axes, s->merge.move.tolerance_mm, s->finished);
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
@@ -104,6 +104,22 @@ static bool is_tried_in_vain(const struct smooth *s)
            feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route));
 }
 
+/* From rest the interval is that of what is known now: whether that is all of the chain. */
+static void begin_window(struct smooth *s)
+{
+    const bool stands = s->window.count > 0;
+
+    if (stands && !s->starts) {
+        return;
+    }
+    set_interval(s);
+    if (stands) {
+        s->window.count = SMOOTH_FIXED;
+    } else {
+        takt_window_start(&s->window, &s->route);
+    }
+}
+
 bool takt_fill(struct smooth *s)
 {
     struct window *w = &s->window;
@@ -112,10 +128,7 @@ bool takt_fill(struct smooth *s)
     if (s->route.count == 0 || is_tried_in_vain(s)) {
         return false;
     }
-    if (w->count == 0) {
-        set_interval(s);
-        takt_window_start(w, &s->route);
-    }
+    begin_window(s);
     forget_end(s);
     const unsigned before = w->count;
 

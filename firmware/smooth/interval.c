@@ -14,17 +14,67 @@
 /* A window is at least this part of the time in which the slowest axis reaches its velocity: README.md. */
 #define WINDOW_OF_RAMP 0.5
 
+/* Of a chain's reach at most this part is cut at a corner: of more tolerance it has no use. */
+#define CUT_OF_REACH 0.5
+
+/* A chain has so many intervals at least at its nominal feed before it needs shorter ones. */
+#define INTERVALS_LEAST 16.0
+
+/* How far a route leads away from where it begins, in the direction of an axis; of bends no less. */
+static double reach_of(const struct route *r)
+{
+    double start[AXIS_COUNT];
+    double p[AXIS_COUNT];
+    double most = 0.0;
+
+    TAKT_ASSERT(r->count > r->first);
+    takt_route_place(r, r->first, route_element(r, r->first)->start_mm, start);
+    for (uint32_t i = r->first; i < r->count; i++) {
+        const struct route_element *e = route_element(r, i);
+        const double beside = e->curved ? 0.5 * (route_end_of(r, i) - e->start_mm) : 0.0;
+
+        takt_route_place(r, i, route_end_of(r, i), p);
+        for (unsigned k = 0; k < r->slots.count; k++) {
+            most = maths_max(most, maths_abs(p[k] - start[k]) + beside);
+        }
+    }
+    return most;
+}
+
+/* Time of a route at its nominal feed. */
+static double nominal_time(const struct route *r)
+{
+    double time = 0.0;
+
+    for (uint32_t i = r->first; i < r->count; i++) {
+        const struct route_element *e = route_element(r, i);
+
+        time += (route_end_of(r, i) - e->start_mm) / (double)e->feed_mm_s;
+    }
+    return time;
+}
+
+/* The velocity that an axis reaches at most on a way of twice the reach: sqrt(2 L A), cbrt(L^2 J). */
+static double velocity_within(const struct smooth_limits *limits, int axis, double reach_mm)
+{
+    const double way = reach_mm / smooth_weight(axis);
+
+    return maths_min(limits->velocity_mm_s[axis],
+                     maths_min(maths_sqrt(2.0 * way * limits->acceleration_mm_s2[axis]),
+                               takt_maths_cbrt(way * way * limits->jerk_mm_s3[axis])));
+}
+
 /* Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not reached. */
-static double longest_ramp(const struct smooth_limits *limits, unsigned axes)
+static double longest_ramp(const struct smooth_limits *limits, unsigned axes, double reach_mm)
 {
     double longest = 0.0;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
-        const double v = limits->velocity_mm_s[i];
+        const double v = velocity_within(limits, i, reach_mm);
         const double j = limits->jerk_mm_s3[i];
         const double a = maths_min(limits->acceleration_mm_s2[i], maths_sqrt(v * j));
 
-        if ((axes >> i & 1U) != 0) {
+        if ((axes >> i & 1U) != 0 && v > 0.0) {
             longest = maths_max(longest, v / a + a / j);
         }
     }
@@ -50,13 +100,31 @@ static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
     return maths_max(curve->cycle_s, soonest);
 }
 
-double takt_interval_of(const struct smooth_limits *machine, const struct route *r, unsigned axes,
-                        double tolerance_mm)
+static double interval_within(const struct smooth_limits *machine, const struct route *r,
+                              unsigned axes, double tolerance_mm, double reach_mm)
 {
     struct smooth_limits curve = *machine;
 
-    TAKT_ASSERT(axes != 0 && tolerance_mm > 0.0);
     takt_smooth_limit(&curve, r->tolerance_mm);
-    return maths_max(soonest_interval(&curve, axes, tolerance_mm),
-                     longest_ramp(machine, axes) * WINDOW_OF_RAMP / window_capacity(r));
+    return maths_max(
+        soonest_interval(&curve, axes, maths_min(tolerance_mm, CUT_OF_REACH * reach_mm)),
+        longest_ramp(machine, axes, reach_mm) * WINDOW_OF_RAMP / window_capacity(r));
+}
+
+/*
+ * Where all of a chain is known it may be so short that it has no use for all of the tolerance, nor its axes for their velocity.
+ * Its intervals are the shorter then, but no more than it takes to have a few at the nominal feed: a slow one gains nothing by more.
+ */
+double takt_interval_of(const struct smooth_limits *machine, const struct route *r, unsigned axes,
+                        double tolerance_mm, bool whole)
+{
+    const double any = interval_within(machine, r, axes, tolerance_mm, MATHS_INFINITY);
+
+    TAKT_ASSERT(axes != 0 && tolerance_mm > 0.0);
+    if (!whole || any * INTERVALS_LEAST <= nominal_time(r)) {
+        return any;
+    }
+    const double least = interval_within(machine, r, axes, tolerance_mm, reach_of(r));
+
+    return maths_min(any, maths_max(least, nominal_time(r) / INTERVALS_LEAST));
 }

@@ -30,14 +30,7 @@ SLOWER_MOST = 1.6
 WIDER_PART = 0.25
 WIDER_MOST = 2.0
 
-STROKES = """G21 G90 G17 G64 P{} F6000
-G1 X4 Y1
-G1 X1 Y3
-G1 X6 Y4
-G1 X2 Y6
-G1 X7 Y7
-M2
-"""
+CORNERS = ((4, 1), (1, 3), (6, 4), (2, 6), (7, 7))
 
 
 def time_of(program, machine, *arguments):
@@ -65,12 +58,26 @@ def wider(program):
     return re.sub(r"G64 P([0-9.]+)", lambda p: f"G64 P{2 * float(p.group(1)):.6f}", program)
 
 
+def strokes(tolerance, size=1.0):
+    """Some mm long, times a size."""
+    return f"G21 G90 G17 G64 P{tolerance} F6000\n" + "".join(f"G1 X{size * x:.5f} Y{size * y:.5f}\n" for x, y in CORNERS) + "M2\n"
+
+
 def strokes_take_no_longer(acceleration):
     machine = hunt_programs.Machine({a: (100.0, acceleration, 50000.0) for a in "XYZ"}, 1000)
-    exact_s = time_of(STROKES.format(0.01), machine, "--exact-path")
-    times = [(p, time_of(STROKES.format(p), machine)) for p in (0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 2)]
+    exact_s = time_of(strokes(0.01), machine, "--exact-path")
+    times = [(p, time_of(strokes(p), machine)) for p in (0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 2)]
     slow = [(p, s) for p, s in times if s is None or s > STROKES_MOST * exact_s]
     t.check(not slow, f"no tolerance makes strokes of some mm much slower at {acceleration} mm/s2", exact_s, slow)
+
+
+def small_strokes_have_no_use_for_more_tolerance(acceleration, jerk):
+    """The interval between samples grew with it, and a chain has seven at least."""
+    machine = hunt_programs.Machine({a: (100.0, acceleration, jerk) for a in "XYZ"}, 1000)
+    for size in (0.01, 0.05, 0.2, 1.0):
+        times = [time_of(strokes(part * size, size), machine) for part in (2, 5, 10, 50)]
+        falls = all(later <= 1.01 * before + 0.003 for before, later in zip(times, times[1:]))
+        t.check(falls, f"strokes of {size} mm are no slower for more tolerance: {acceleration} mm/s2, {jerk} mm/s3", times)
 
 
 def compare(pairs, part, most, claim):
@@ -114,5 +121,7 @@ joints_that_are_not_worth_passing_are_rests()
 what_a_change_of_rate_is_left_is_told_by_the_axes_on_the_path()
 for mm_s2 in (250.0, 500.0, 1000.0, 5000.0):
     strokes_take_no_longer(mm_s2)
+for limits in ((1000.0, 50000.0), (250.0, 1e6), (4000.0, 1e4)):
+    small_strokes_have_no_use_for_more_tolerance(*limits)
 random_programs(int(sys.argv[1]) if len(sys.argv) > 1 else 50)
 t.finish()
