@@ -288,6 +288,32 @@ static void test_the_drives_count_as_faulted_when_all_are_switched_off_and_stand
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
 }
 
+/* The state of the master when all drives have stood for long, Y in this state. */
+static enum drives_state state_beside(enum cia402_state state)
+{
+    setUp();
+    enable_at(0);
+    put_status(2, CIA402_FAULT, 0);
+    for (unsigned i = 0; i < 50; i++) {
+        cycle();
+        put_all(CIA402_SWITCH_ON_DISABLED, 0);
+        put_status(2, state, 0);
+    }
+    return drives_get_state(&drives);
+}
+
+static void test_a_drive_that_stands_is_not_switched_off_while_its_state_has_torque(void)
+{
+    for (int state = CIA402_NOT_READY; state <= CIA402_FAULT; state++) {
+        const bool has_torque = state == CIA402_ENABLED || state == CIA402_QUICK_STOP ||
+                                state == CIA402_FAULT_REACTION;
+
+        TEST_ASSERT_EQUAL_INT_MESSAGE(has_torque ? DRIVES_BRAKING : DRIVES_FAULTED,
+                                      state_beside((enum cia402_state)state),
+                                      takt_cia402_state_text((enum cia402_state)state));
+    }
+}
+
 static void test_a_drive_that_never_stands_is_given_up_after_the_timeout(void)
 {
     enable_at(0);
@@ -470,6 +496,7 @@ int main(void)
     RUN_TEST(test_a_quick_stop_that_the_bus_refuses_is_sent_again);
     RUN_TEST(test_a_quick_stop_is_sent_again_until_the_statusword_shows_it);
     RUN_TEST(test_the_drives_count_as_faulted_when_all_are_switched_off_and_stand);
+    RUN_TEST(test_a_drive_that_stands_is_not_switched_off_while_its_state_has_torque);
     RUN_TEST(test_a_drive_that_never_stands_is_given_up_after_the_timeout);
     RUN_TEST(test_setpoints_are_followed_to_rest_after_a_fault_where_there_is_time);
     RUN_TEST(test_setpoints_that_do_not_come_to_rest_in_time_are_cut_off);
