@@ -305,8 +305,8 @@ static enum drives_state state_beside(enum cia402_state state)
 static void test_a_drive_that_stands_is_not_switched_off_while_its_state_has_torque(void)
 {
     for (int state = CIA402_NOT_READY; state <= CIA402_FAULT; state++) {
-        const bool has_torque = state == CIA402_ENABLED || state == CIA402_QUICK_STOP ||
-                                state == CIA402_FAULT_REACTION;
+        const bool has_torque =
+            state == CIA402_ENABLED || state == CIA402_QUICK_STOP || state == CIA402_FAULT_REACTION;
 
         TEST_ASSERT_EQUAL_INT_MESSAGE(has_torque ? DRIVES_BRAKING : DRIVES_FAULTED,
                                       state_beside((enum cia402_state)state),

@@ -16,23 +16,28 @@
 /* A ramp from it takes F/A + A/J, 50 cycles, where one axis moves alone. */
 #define HOLD_CYCLES_MAX 58
 
-static const struct plan_limits limits = {
-    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
-
+static struct plan_limits limits;
 static struct path path;
 static struct motion motion;
 static struct motion_operator asked;
 static unsigned pushed;
 
-void setUp(void)
+static void set_up(double jerk_mm_s3)
 {
     const struct point start = {{RADIUS_MM, 0.0}};
 
+    limits = (struct plan_limits){
+        7,    {100, 100, 100},   {1000, 1000, 1000}, {jerk_mm_s3, jerk_mm_s3, jerk_mm_s3}, 1e-3,
+        1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
     takt_path_init(&path, &limits, &start);
     takt_motion_init(&motion, &path, &start, false);
     asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     pushed = 0;
+}
+
+void setUp(void)
+{
+    set_up(50000.0);
 }
 
 void tearDown(void)
@@ -118,10 +123,30 @@ static void test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself(void)
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
+/* Only blocks from the first on that is not known to be fast enough are asked about: none is forgotten when they are many. */
+static void test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_that_brakes(void)
+{
+    const struct hold *h = &motion.mover.beside.hold;
+    uint32_t first;
+
+    set_up(1000.0);
+    run(1500);
+    asked.hold = true;
+    run(10);
+    TEST_ASSERT_TRUE(motion.holds);
+    first = h->block;
+    while (!takt_motion_rests(&motion)) {
+        run(1);
+        TEST_ASSERT_GREATER_THAN_INT(0, (int32_t)(h->clear - h->block));
+    }
+    TEST_ASSERT_GREATER_THAN_UINT32(first + 8, h->block);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_hold_from_any_moment_takes_hardly_longer_than_its_ramp);
     RUN_TEST(test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself);
+    RUN_TEST(test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_that_brakes);
     return UNITY_END();
 }
