@@ -485,7 +485,6 @@ bool takt_hold_begin(struct hold *h, const struct path *path, const struct refer
     h->place.change = (way[0] - way[1]) / h->length;
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ending.ease = 0.0;
-    h->ending.peak = 0.0;
     h->stops = true;
     h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
     pass_clear(h, path);

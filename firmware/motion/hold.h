@@ -36,7 +36,10 @@ struct hold_state {
     double change;
 };
 
-/* How it goes on if nothing better is found: the change goes by -ease to -peak, if that is not 0, and by ease to 0. */
+/*
+ * How it goes on if nothing better is found: the change goes by -ease to -peak, if that is not 0, and by ease to 0. ease 0: no way
+ * has been found yet, and there is no peak.
+ */
 struct hold_ending {
     double ease;
     double peak;

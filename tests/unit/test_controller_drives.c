@@ -61,10 +61,30 @@ static void test_a_reversed_second_drive_looks_for_its_home_on_the_same_side(voi
     TEST_ASSERT_EQUAL_DOUBLE(-100000, config.axis[3].increments_per_mm);
 }
 
+static double gain_per_s(void)
+{
+    takt_controller_drives_config(&machine, NULL, &config);
+    return config.position_gain_per_s;
+}
+
+/* K = 1 / (4 T), T the loop's own time and A/J of the slowest axis. */
+static void test_the_position_gain_is_that_of_the_slowest_axis_with_a_drive_on_can(void)
+{
+    const double loop_s = 1e-3 * (DRIVES_LATENCY_CYCLES - 0.5);
+    struct machine_axis *slow = &machine.axis[AXIS_Z];
+
+    TEST_ASSERT_EQUAL_DOUBLE(0.25 / (loop_s + 1000.0 / 50000), gain_per_s());
+    slow->max_jerk_mm_s3 = 10000;
+    TEST_ASSERT_EQUAL_DOUBLE(0.25 / (loop_s + 1000.0 / 10000), gain_per_s());
+    slow->drive_type = MACHINE_DRIVE_STEP;
+    TEST_ASSERT_EQUAL_DOUBLE(0.25 / (loop_s + 1000.0 / 50000), gain_per_s());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first);
     RUN_TEST(test_a_reversed_second_drive_looks_for_its_home_on_the_same_side);
+    RUN_TEST(test_the_position_gain_is_that_of_the_slowest_axis_with_a_drive_on_can);
     return UNITY_END();
 }

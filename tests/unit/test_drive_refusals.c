@@ -155,6 +155,26 @@ static void test_scaling_is_checked_by_the_travel_of_a_turn(void)
                    "increments_per_mm says 10000");
 }
 
+/* A start where the feed constant is 10000.4 units, half of them in a turn of the motor. */
+static void start_with_feed_constant(uint32_t told)
+{
+    setUp();
+    config.axis[1].travel_per_turn_mm = 5.0002;
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6092, 1), .value = told});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6092, 2), .value = 1});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6091, 1), .value = 2});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6091, 2), .value = 1});
+    run_start();
+}
+
+static void test_scaling_may_be_off_by_half_a_unit_of_what_is_told_as_a_whole_number(void)
+{
+    start_with_feed_constant(10000);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    start_with_feed_constant(10001);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SCALING, takt_drives_get_fault(&drives)->code);
+}
+
 /* Its target, and its node, which is the first; the others are as they are. */
 static void set_up_first(uint32_t target_id)
 {
@@ -223,6 +243,7 @@ int main(void)
     RUN_TEST(test_a_drive_that_keeps_another_time_between_targets_is_refused);
     RUN_TEST(test_a_drive_that_cannot_report_in_every_cycle_is_refused);
     RUN_TEST(test_scaling_is_checked_by_the_travel_of_a_turn);
+    RUN_TEST(test_scaling_may_be_off_by_half_a_unit_of_what_is_told_as_a_whole_number);
     RUN_TEST(test_a_drive_that_has_been_set_up_is_told_nothing);
     RUN_TEST(test_a_drive_that_would_take_the_target_of_another_is_refused);
     RUN_TEST(test_a_request_without_an_answer_is_repeated_twice_and_no_more);

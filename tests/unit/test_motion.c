@@ -155,6 +155,21 @@ static void test_a_stop_is_landed_on_and_the_program_goes_on(void)
     TEST_ASSERT_EQUAL(2, landed);
 }
 
+/* The first cycle begins a span: it need not take the ceiling as well. */
+static void test_a_ceiling_that_is_there_before_the_first_cycle_is_taken_before_it(void)
+{
+    push(MOVE_FEED, 100.0, 50.0);
+    push_end();
+    takt_motion_prepare(&motion);
+    TEST_ASSERT_FALSE(motion.has_ceiling);
+    TEST_ASSERT_NOT_NULL(takt_motion_wanted(&motion));
+    takt_path_go_on(&path);
+    takt_motion_build(&motion);
+    takt_motion_prepare(&motion);
+    TEST_ASSERT_TRUE(motion.has_ceiling);
+    TEST_ASSERT_FALSE(reference_take(&motion.reference));
+}
+
 /* Rests within the time of one ramp, somewhere on the move; then goes on to its end. */
 static void rest_and_go_on(void)
 {
@@ -352,6 +367,7 @@ int main(void)
     RUN_TEST(test_a_dwell_lasts_its_cycles_at_rest);
     RUN_TEST(test_a_stop_is_not_passed_before_what_is_sent_has_come_to_it);
     RUN_TEST(test_a_stop_is_landed_on_and_the_program_goes_on);
+    RUN_TEST(test_a_ceiling_that_is_there_before_the_first_cycle_is_taken_before_it);
     RUN_TEST(test_a_hold_rests_on_the_path_and_resumes);
     RUN_TEST(test_an_override_of_0_holds);
     RUN_TEST(test_half_the_override_is_half_the_feed);

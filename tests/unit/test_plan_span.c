@@ -114,6 +114,28 @@ static void test_a_span_of_many_parts_has_a_window(void)
     TEST_ASSERT_TRUE(cycles_of_first() >= 5 && cycles_of_first() <= 20);
 }
 
+/*
+ * To a stop at 0.02 mm 6 cycles are the longest of use. The trapezoidal reference is half a window ahead: to leave at 50 mm/s it goes
+ * 0.02 mm + 0.05 (N - 1)/2 from rest by J N, which takes 31.1, 30.8, 30.6 and 30 cycles for N = 6, 4, 3 and 2.
+ */
+static void test_a_short_block_that_is_left_in_motion_has_a_shorter_window_than_to_a_stop(void)
+{
+    const struct point start = {{0}};
+    struct plan_limits landing = limits;
+
+    landing.landing = LANDING_BLOCK;
+    takt_path_init(&path, &landing, &start);
+    push(0.02, 50.0);
+    push(5.0, 50.0);
+    takt_path_finish(&path);
+    TEST_ASSERT_TRUE(takt_span_lands(&path, 0));
+    TEST_ASSERT_EQUAL(2, cycles_of_first());
+    begin_path();
+    push(0.02, 50.0);
+    takt_path_finish(&path);
+    TEST_ASSERT_EQUAL(6, cycles_of_first());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -125,5 +147,6 @@ int main(void)
     RUN_TEST(test_a_window_is_known_when_the_end_of_the_span_is);
     RUN_TEST(test_a_window_once_promised_is_kept_close_by);
     RUN_TEST(test_a_span_of_many_parts_has_a_window);
+    RUN_TEST(test_a_short_block_that_is_left_in_motion_has_a_shorter_window_than_to_a_stop);
     return UNITY_END();
 }

@@ -36,18 +36,26 @@ static void add_record(enum replay_kind kind, const uint8_t *holds, size_t size)
     length += REPLAY_RECORD_HEAD + size + REPLAY_RECORD_TAIL;
 }
 
+/* Bytes of what tells four intervals in which no block ends. */
+#define KNOTS_BYTES 26
+
 /* A section of one block and four intervals that stands where it starts. */
-static void add_section(uint32_t first_block)
+static void add_section_of(uint32_t first_block, size_t knots_bytes)
 {
     uint8_t section[REPLAY_SECTION_BYTES] = {0};
-    uint8_t knots[26] = {4};
+    uint8_t knots[KNOTS_BYTES + 1] = {4};
 
     takt_replay_put(section, first_block, 4);
     takt_replay_put(section + 4, 1, 4);
     takt_replay_put(section + 8, 4, 4);
     add_record(REPLAY_SECTION, section, sizeof(section));
-    add_record(REPLAY_KNOTS, knots, sizeof(knots));
+    add_record(REPLAY_KNOTS, knots, knots_bytes);
     add_record(REPLAY_END, section, 0);
+}
+
+static void add_section(uint32_t first_block)
+{
+    add_section_of(first_block, KNOTS_BYTES);
 }
 
 void setUp(void)
@@ -133,11 +141,19 @@ static void test_a_damaged_record_moves_nothing(void)
     TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_DAMAGED, replay.alarm.code);
 }
 
+static void test_a_record_that_is_longer_than_what_it_tells_moves_nothing(void)
+{
+    add_section_of(1, KNOTS_BYTES + 1);
+    TEST_ASSERT_EQUAL_DOUBLE(0, run_until_it_fails());
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_DAMAGED, replay.alarm.code);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_section_of_another_block_moves_nothing);
     RUN_TEST(test_a_curve_that_does_not_lead_to_the_end_is_told);
     RUN_TEST(test_a_damaged_record_moves_nothing);
+    RUN_TEST(test_a_record_that_is_longer_than_what_it_tells_moves_nothing);
     return UNITY_END();
 }

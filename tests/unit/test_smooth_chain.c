@@ -134,6 +134,30 @@ static void test_after_a_reset_no_axes_are_expected(void)
     TEST_ASSERT_FALSE(joins(AXIS_Z));
 }
 
+/* The next motion of the path itself, of which nothing is known before. */
+static bool next_motion_starts(bool before)
+{
+    struct smooth_piece piece = {.starts = before};
+    struct curve taken;
+
+    TEST_ASSERT_EQUAL(SMOOTH_MOTION, takt_smooth_take(&smooth, &scratch, &piece, &taken));
+    return piece.starts;
+}
+
+/* A line of two feeds is quickest as it is. */
+static void test_the_first_motion_that_is_taken_as_programmed_begins_at_rest_and_no_other(void)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        set_line(AXIS_X, 10.0);
+        move.feed_mm_s = i == 0 ? 100.0 : 50.0;
+        takt_smooth_push(&smooth, &move, i, &curve);
+        at = move.end;
+    }
+    takt_smooth_finish(&smooth);
+    TEST_ASSERT_TRUE(next_motion_starts(false));
+    TEST_ASSERT_FALSE(next_motion_starts(true));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -142,5 +166,6 @@ int main(void)
     RUN_TEST(test_the_next_chain_serves_the_axes_of_both);
     RUN_TEST(test_a_chain_that_ends_by_itself_leaves_no_axes_to_the_next);
     RUN_TEST(test_after_a_reset_no_axes_are_expected);
+    RUN_TEST(test_the_first_motion_that_is_taken_as_programmed_begins_at_rest_and_no_other);
     return UNITY_END();
 }
