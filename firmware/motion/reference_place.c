@@ -377,17 +377,20 @@ static bool is_refused(const struct reference *l)
            (p->piece == p->ceiling->count || !can_follow(l, p->ceiling, p->piece, true));
 }
 
-/* From now on the trapezoidal reference is in the ceiling that came. Of the list what is used. */
+/*
+ * From now on the trapezoidal reference is in the ceiling that came. Of the list what is used. If it is late it keeps the acceleration
+ * that the ceiling before had here: by that it can come to rest in time. The new one's may be less even before what it is late for.
+ */
 static void take_place(struct reference *l)
 {
     struct reference_place *from = &l->coming;
     struct reference_place *to = &l->here;
 
+    to->late_a = reference_has_piece(l) ? reference_acceleration(l) : from->late_a;
     to->ceiling = from->ceiling;
     to->piece = from->piece;
     to->late = from->late;
     to->late_start = from->late_start;
-    to->late_a = from->late_a;
     to->low_first = 0;
     to->low_count = from->low_count;
     for (uint32_t i = 0; i < from->low_count; i++) {

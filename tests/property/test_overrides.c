@@ -234,6 +234,8 @@ static void test_rare_programs_keep_the_limits(void)
                  8); /* less acceleration was come to too fast, under an override just raised */
     check_pinned(6805, 8);  /* what was known ended before the next ceiling came */
     check_pinned(14807, 8); /* and so, while a slow block could not be come to yet */
+    check_pinned(2306128,
+                 2); /* the next ceiling had less acceleration before what it was late for */
 }
 
 int main(int argc, char **argv)
