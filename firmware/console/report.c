@@ -257,6 +257,13 @@ void takt_console_report_modes(struct console *c, const struct panel_snapshot *n
 
 /* ---- $# ---- */
 
+/* A position, or an angle: in inches the first is divided, and both have a decimal more. */
+static void coordinate(struct console *c, double value, bool linear)
+{
+    takt_reply_number(&c->reply, value / (c->in_inches && linear ? MM_PER_INCH : 1.0),
+                      c->in_inches ? POSITION_DECIMALS + 1 : POSITION_DECIMALS);
+}
+
 void takt_console_axes(struct console *c, const double value[AXIS_COUNT])
 {
     const char *comma = "";
@@ -265,9 +272,7 @@ void takt_console_axes(struct console *c, const double value[AXIS_COUNT])
         if (!c->config.machine->axis[i].present)
             continue;
         text(c, comma);
-        takt_reply_number(&c->reply,
-                          value[i] / (c->in_inches && i < AXIS_LINEAR_COUNT ? MM_PER_INCH : 1.0),
-                          c->in_inches ? POSITION_DECIMALS + 1 : POSITION_DECIMALS);
+        coordinate(c, value[i], i < AXIS_LINEAR_COUNT);
         comma = ",";
     }
 }
@@ -291,8 +296,7 @@ static void report_tool_offset(struct console *c)
 
     (void)tell(c, CONSOLE_FACT_TOOL_OFFSET, value);
     text(c, "[TLO:");
-    takt_reply_number(&c->reply, value[AXIS_Z] / (c->in_inches ? MM_PER_INCH : 1.0),
-                      POSITION_DECIMALS);
+    coordinate(c, value[AXIS_Z], true);
     text(c, "]");
     takt_console_line_end(c);
 }

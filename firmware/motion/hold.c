@@ -186,6 +186,7 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
 {
     const float b = (float)(0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES);
 
+    TAKT_ASSERT((int32_t)(h->clear - h->block) >= 0);
     for (uint32_t i = 0; i < BLOCKS_MAX; i++) {
         const uint32_t block = h->clear + i;
         const float gap = (float)(block - h->block) - ahead;

@@ -324,6 +324,7 @@ static void test_reports_in_inches_have_four_decimals(void)
     settle();
     ask("$13=1", "ok");
     ask("$#", "[G55:1.0000,-0.0394,0.0000]\r\n");
+    ask("$#", "[TLO:0.0000]\r\n");
     ask("$13=0", "ok");
     ask("$#", "[G55:25.400,-1.000,0.000]\r\n");
 }
