@@ -225,6 +225,7 @@ static void test_rare_programs_keep_the_limits(void)
     check_pinned(870,
                  256);   /* the override fell while the trapezoidal reference could not brake yet */
     check_pinned(28, 8); /* a span was begun with another window than the next ceiling's */
+    check_pinned(221, 8);    /* and so, where it could no longer be rested before it */
     check_pinned(278, 256);  /* a junction's feed was lowered too late to come down to it */
     check_pinned(911, 8);    /* a lower override, and an acceleration that changes within a block */
     check_pinned(467, 1);    /* what had been come to was not known for that by the next ceiling */
