@@ -125,7 +125,7 @@ static void step(void)
     takt_console_step(&console);
 }
 
-static void steps(unsigned count)
+static inline void steps(unsigned count)
 {
     for (unsigned i = 0; i < count; i++)
         step();

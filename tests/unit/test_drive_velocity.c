@@ -179,6 +179,54 @@ static void test_a_velocity_beyond_32_bits_is_a_fault(void)
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_RANGE, takt_drives_get_fault(&drives)->code);
 }
 
+/* ---- A gantry ---- */
+
+/* The ideal drive is the second of the axis Y; the first one stands at 0. */
+static void run_gantry_cycle(void)
+{
+    position_mm += velocity_mm_s * 1e-3;
+    velocity_mm_s = coming_mm_s;
+    put_statuses();
+    if (nodes.starts[3] > 0) { /* its status is the last one */
+        struct can_frame *frame = &nodes.pending[(nodes.pending_count - 1) % FAKE_NODES_PENDING];
+        const double inc = takt_maths_round(position_mm * SCALE);
+        little_endian_write32(frame->data + 2, (uint32_t)(int32_t)inc);
+    }
+    takt_drives_receive(&drives, &port);
+    takt_drives_sync(&drives, &port);
+    takt_drives_send(&drives, &port, &setpoint);
+    coming_mm_s = target_of_3 / SCALE;
+    cycles_run++;
+}
+
+static void begin_gantry(double second_mm)
+{
+    let_modes_be(0x120);
+    config.position_gain_per_s = 100;
+    config.axis[2].axis = AXIS_Y;
+    config.axis[2].homing.zero_mm_s = 2;
+    config.axis[2].homing.acceleration_mm_s2 = 500;
+    config.gantry_count = 1;
+    config.gantry[0] = (struct drives_gantry){1, 2, 0.5};
+    position_mm = second_mm;
+    velocity_mm_s = coming_mm_s = 0;
+    setpoint = (struct point){{0}};
+    takt_drives_init(&drives, &config);
+}
+
+static void test_the_second_drive_of_a_gantry_has_come_to_the_first_before_they_are_enabled(void)
+{
+    double fastest_mm_s = 0;
+    begin_gantry(-0.4);
+    while (drives_get_state(&drives) == DRIVES_STARTING && cycles_run < 2 * START_CYCLES) {
+        run_gantry_cycle();
+        fastest_mm_s = maths_max(fastest_mm_s, maths_abs(velocity_mm_s));
+    }
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 0, position_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 2, fastest_mm_s); /* that of homing, and what is rounded */
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -193,5 +241,6 @@ int main(void)
     RUN_TEST(test_a_lag_dies_away_without_overshoot);
     RUN_TEST(test_units_and_the_sense_of_the_motor_are_those_of_the_drive);
     RUN_TEST(test_a_velocity_beyond_32_bits_is_a_fault);
+    RUN_TEST(test_the_second_drive_of_a_gantry_has_come_to_the_first_before_they_are_enabled);
     return UNITY_END();
 }

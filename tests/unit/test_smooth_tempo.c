@@ -2,6 +2,7 @@
 #include "smooth/tempo.h"
 
 #include "base/maths.h"
+#include "smooth/tempo_begin.h"
 
 #include <string.h>
 #include <unity.h>
@@ -155,6 +156,23 @@ static void test_a_window_begins_and_ends_at_the_rate_that_its_neighbours_have(v
     TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[tempo.pieces + 1]);
 }
 
+/* No next window wants it slower there: the last piece goes at the rate that none may exceed. */
+static void test_where_the_path_ends_the_highest_rate_is_kept_to_the_end(void)
+{
+    set_machine(100.0, 1000.0, 50000.0);
+    run_at(40.0, 0.0);
+    takt_tempo_find(&tempo, &window, &route);
+    const double with_neighbour = time_of_all();
+
+    window.at_end = true;
+    takt_tempo_find(&tempo, &window, &route);
+    TEST_ASSERT_TRUE(time_of_all() < 0.97 * with_neighbour);
+    for (unsigned i = tempo.pieces - 1; i < tempo.pieces + 2; i++) {
+        TEST_ASSERT_FLOAT_WITHIN(0.01f * RATE_SQUARED_MOST, RATE_SQUARED_MOST,
+                                 tempo.rate_squared[i]);
+    }
+}
+
 /* The curve brakes by 1.3 A; the way is hardly long enough to brake by less. */
 static void test_what_is_exceeded_is_drawn_inside_and_nothing_else_goes_beyond(void)
 {
@@ -225,6 +243,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_slow_straight_is_gone_faster_within_every_limit);
     RUN_TEST(test_a_window_begins_and_ends_at_the_rate_that_its_neighbours_have);
+    RUN_TEST(test_where_the_path_ends_the_highest_rate_is_kept_to_the_end);
     RUN_TEST(test_what_is_exceeded_is_drawn_inside_and_nothing_else_goes_beyond);
     RUN_TEST(test_a_higher_limit_is_never_slower);
     RUN_TEST(test_a_slower_stretch_is_slow_and_the_rest_as_it_was);
