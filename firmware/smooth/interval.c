@@ -41,19 +41,6 @@ static double reach_of(const struct route *r)
     return most;
 }
 
-/* Time of a route at its nominal feed. */
-static double nominal_time(const struct route *r)
-{
-    double time = 0.0;
-
-    for (uint32_t i = r->first; i < r->count; i++) {
-        const struct route_element *e = route_element(r, i);
-
-        time += (route_end_of(r, i) - e->start_mm) / (double)e->feed_mm_s;
-    }
-    return time;
-}
-
 /* The velocity that an axis reaches at most on a way of twice the reach: sqrt(2 L A), cbrt(L^2 J). */
 static double velocity_within(const struct smooth_limits *limits, int axis, double reach_mm)
 {
@@ -121,10 +108,12 @@ double takt_interval_of(const struct smooth_limits *machine, const struct route 
     const double any = interval_within(machine, r, axes, tolerance_mm, MATHS_INFINITY);
 
     TAKT_ASSERT(axes != 0 && tolerance_mm > 0.0);
-    if (!whole || any * INTERVALS_LEAST <= nominal_time(r)) {
+    if (!whole) {
         return any;
     }
+    const double start_mm = route_element(r, r->first)->start_mm;
+    const double time = (double)takt_route_time(r, r->first, start_mm, takt_route_end(r));
     const double least = interval_within(machine, r, axes, tolerance_mm, reach_of(r));
 
-    return maths_min(any, maths_max(least, nominal_time(r) / INTERVALS_LEAST));
+    return maths_min(any, maths_max(least, time / INTERVALS_LEAST));
 }

@@ -70,6 +70,19 @@ double takt_route_end(const struct route *r)
     return r->count == 0 ? 0.0 : r->end_mm;
 }
 
+float takt_route_time(const struct route *r, uint32_t element, double from_mm, double to_mm)
+{
+    float time = 0.0f;
+
+    for (uint32_t i = element; i < r->count && from_mm < to_mm; i++) {
+        const double end_mm = maths_min(route_end_of(r, i), to_mm);
+
+        time += (float)(maths_max(end_mm, from_mm) - from_mm) / route_element(r, i)->feed_mm_s;
+        from_mm = maths_max(end_mm, from_mm);
+    }
+    return time;
+}
+
 static void gather(const struct route *r, const struct point *p, double by_slot[])
 {
     for (unsigned i = 0; i < r->slots.count; i++) {

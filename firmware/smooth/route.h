@@ -136,6 +136,8 @@ static inline double route_end_of(const struct route *r, uint32_t index)
     return index + 1 < r->count ? route_element(r, index + 1)->start_mm : r->end_mm;
 }
 double takt_route_end(const struct route *r);
+/* Time from a place, of an element or behind, to another at the nominal feed, s. */
+float takt_route_time(const struct route *r, uint32_t element, double from_mm, double to_mm);
 /* The motion it belongs to, but for centres and turns of arcs. */
 void takt_route_move(const struct route *r, uint32_t index, struct move *move);
 /* The programmed feed; infinite for a rapid. */

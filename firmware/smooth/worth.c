@@ -97,22 +97,6 @@ static float go(const struct worth_window *now, float from, struct passed *last)
     return time;
 }
 
-/* Time of a stretch at its nominal feed: neither a curve nor the path is quicker. */
-static float time_between(const struct worth_window *now, uint32_t element, double from_mm,
-                          double to_mm)
-{
-    const struct route *r = now->route;
-    float time = 0.0f;
-
-    for (uint32_t i = element; i < r->count && from_mm < to_mm; i++) {
-        const double end_mm = maths_min(route_end_of(r, i), to_mm);
-
-        time += (float)(maths_max(end_mm, from_mm) - from_mm) / route_element(r, i)->feed_mm_s;
-        from_mm = maths_max(end_mm, from_mm);
-    }
-    return time;
-}
-
 /*
  * What a part of a way from rest to rest takes: half of what getting going and braking take longer than its feed, r, and its
  * way at that; before the feed is reached sqrt(2 x r), x the way at the feed. all: what all of it takes; cruise: at its feed.
@@ -182,7 +166,7 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
         const double end_mm = w->at_mm[now->pieces + 1];
         const bool quicker =
             takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
-            time + now->rest_s + time_between(now, w->element[now->pieces + 1], end_mm, *to_mm);
+            time + now->rest_s + takt_route_time(r, w->element[now->pieces + 1], end_mm, *to_mm);
 
         if (quicker || end_mm == *to_mm) {
             return quicker;
