@@ -92,7 +92,10 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum ramp_profile 
     return takt_maths_float_below(feed / c->cycle_s);
 }
 
-/* What the trapezoidal reference may do in a piece from which feeds at its end are known; they become those at its beginning. */
+/*
+ * What the trapezoidal reference may do in a piece from which feeds at its end are known; they become those at its beginning. Under no
+ * override is it faster there than under the highest one: an override may be raised at any place.
+ */
 static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile, float *feed_mm_s,
                        float *max_mm_s)
 {
@@ -108,8 +111,8 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile,
         p->feed_mm_s = landed_feed(c, k, profile, false);
         p->end_feed_max_mm_s = top_mm_s;
     }
-    *feed_mm_s = begin_feed(c, k, p->feed_mm_s, end_mm_s);
     *max_mm_s = begin_feed(c, k, top_mm_s, end_max_mm_s);
+    *feed_mm_s = single_min(begin_feed(c, k, p->feed_mm_s, end_mm_s), *max_mm_s);
     TAKT_ASSERT(*feed_mm_s >= 0.0F && *feed_mm_s <= p->feed_mm_s);
 }
 

@@ -175,6 +175,22 @@ static void test_no_override_changes_the_acceleration_anywhere(void)
     }
 }
 
+/* Else it could not be obeyed when it is raised: where the slow block begins for its highest feed had been passed too fast. */
+static void test_no_override_leaves_the_way_to_be_faster_than_the_highest_one_does(void)
+{
+    push(MOVE_FEED, 50.0, 80.0);
+    push(MOVE_FEED, 50.01, 0.5);
+    push(MOVE_FEED, 100.0, 80.0);
+    takt_path_finish(&path);
+    for (int i = 1; i <= 24; i++) {
+        request.feed_ratio = i / 20.0;
+        takt_ceiling_build(&ceiling, &path, &request);
+        for (uint32_t k = 0; k < ceiling.count; k++) {
+            TEST_ASSERT_TRUE(ceiling.piece[k].end_feed_mm_s <= ceiling.piece[k].end_feed_max_mm_s);
+        }
+    }
+}
+
 static void test_the_override_scales_the_programmed_feed_alone(void)
 {
     push(MOVE_FEED, 50.0, 80.0);
@@ -260,6 +276,7 @@ int main(void)
     RUN_TEST(test_the_override_scales_the_programmed_feed_alone);
     RUN_TEST(test_a_move_without_override_keeps_its_feed);
     RUN_TEST(test_a_rapid_obeys_the_rapid_override);
+    RUN_TEST(test_no_override_leaves_the_way_to_be_faster_than_the_highest_one_does);
     RUN_TEST(test_a_short_span_has_a_short_window);
     RUN_TEST(test_a_piece_of_constant_feed_ends_with_exactly_that_feed);
     RUN_TEST(test_what_has_been_left_long_ago_was_left_where_the_oldest_block_starts);
