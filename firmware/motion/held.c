@@ -5,6 +5,8 @@
 #include "motion/held.h"
 
 #include "base/assert.h"
+#include "motion/hold_pieces.h"
+#include "motion/reference_private.h"
 #include "plan/path_unit.h"
 
 /* From where the setpoint is the trapezoidal reference goes on by itself, at the same feed. */
@@ -12,7 +14,7 @@ void takt_held_end(struct motion *m)
 {
     struct reference *l = &m->reference;
     const uint64_t step = (uint64_t)(hold_way(&m->mover.beside.hold) + 0.5);
-    const uint64_t at = path_start(m->path, m->mover.beside.hold.block) +
+    const uint64_t at = takt_hold_start(&m->mover.beside.hold, m->path) +
                         (uint64_t)(hold_at(&m->mover.beside.hold) + 0.5);
 
     TAKT_ASSERT(m->holds);
@@ -27,7 +29,7 @@ void takt_held_end(struct motion *m)
 static void follow_hold(struct motion *m)
 {
     const struct hold *h = &m->mover.beside.hold;
-    const uint64_t start = path_start(m->path, h->block);
+    const uint64_t start = takt_hold_start(h, m->path);
     const double at = hold_at(h);
     const uint64_t ahead = start + (uint64_t)(at + 0.5 * (m->reference.window - 1.0) * hold_way(h));
 
@@ -36,15 +38,31 @@ static void follow_hold(struct motion *m)
     m->lag = h->place.rate > 0.0 ? (double)(int64_t)(ahead - start) - at : 0.0;
 }
 
-/* Is the setpoint on a smoothed curve, and moved by the trapezoidal reference through a short window? */
+/* Is the setpoint moved by the trapezoidal reference, and by nothing else? */
 static bool may_hold(const struct motion *m)
 {
     const struct reference *l = &m->reference;
-    const struct average *a = &m->mover.average;
 
-    return !l->standing && !l->run.active && !l->here.late && m->feed_before[0] > 0.0 &&
-           path_at(m->path, m->path->first)->smooth &&
-           a->box[a->boxes - 1].end <= MOTION_INPUTS_MAX;
+    return !l->standing && !l->run.active && !l->here.late && reference_has_piece(l) &&
+           m->feed_before[0] > 0.0 && path_at(m->path, m->path->first)->motion;
+}
+
+/*
+ * What the averages' inputs leave of their memory is for the pieces of the hold: once for all that it looks at in a span. False:
+ * too little.
+ */
+static bool has_memory(struct motion *m)
+{
+    struct motion_beside *beside = &m->mover.beside;
+    const struct average *a = &m->mover.average;
+    const size_t used = a->box[a->boxes - 1].end * (sizeof a->input[0] / sizeof(float));
+    float *store = beside->store + used;
+
+    if (used >= MOTION_STORE_MAX) {
+        return false;
+    }
+    return (m->looks && beside->hold.store == store) ||
+           takt_hold_prepare(&beside->hold, &m->path->limits, store, MOTION_STORE_MAX - used);
 }
 
 /* Takes over as soon as it can. */
@@ -54,12 +72,10 @@ static void begin_hold(struct motion *m)
     const double at = (double)(int64_t)(m->reference.at - start) - m->lag;
     const double way[] = {m->feed_before[0] * PATH_UNITS_PER_MM,
                           m->feed_before[1] * PATH_UNITS_PER_MM};
-    const bool anew = !m->looks;
 
     TAKT_ASSERT(!m->holds);
-    m->looks = may_hold(m);
-    m->holds =
-        m->looks && takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, at, way, anew);
+    m->looks = may_hold(m) && has_memory(m);
+    m->holds = m->looks && takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, at, way);
 }
 
 /* The setpoint is moved by the hold, or the trapezoidal reference goes on. */

@@ -1,5 +1,5 @@
 /*
- * Goal: on a smoothed curve the axes come to rest, and up to speed again, as quickly as they can at each place of it.
+ * Goal: on a curve the axes come to rest, and up to speed again, as quickly as they can at each place of it.
  *
  * With the place u(t) on the curve x(u), rate r = u', change q = r' and w = q', the chain rule gives for every axis
  *
@@ -29,11 +29,9 @@
 #include "base/assert.h"
 #include "base/maths.h"
 #include "motion/hold_axes.h"
+#include "motion/hold_pieces.h"
 #include "plan/path_unit.h"
 #include "smooth/single.h"
-
-/* Pieces that are read in a cycle. */
-#define READ_MAX 4
 
 /* Parts that the ease is looked at in. */
 #define EASE_PARTS 4
@@ -67,76 +65,6 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 #define REST_PART  1e-9
 #define TRIAL_PART 4e-6
 
-/* -- the pieces -- */
-
-/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
-static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
-{
-    return (float)takt_path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
-}
-
-/* Derivatives of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
-static void read_piece(struct hold *h, const struct path *path, uint32_t block)
-{
-    struct hold_piece *p = &h->piece[block % HOLD_PIECES_MAX];
-    struct point c[4];
-
-    TAKT_ASSERT(ring_at(&path->ring, block)->smooth && h->axes <= AXIS_COUNT);
-    takt_ring_control(&path->ring, block, c);
-    for (unsigned i = 0; i < h->axes; i++) {
-        const unsigned axis = h->axis[i];
-        const double step0 = c[1].at[axis] - c[0].at[axis];
-        const double step1 = c[2].at[axis] - c[1].at[axis];
-        const double step2 = c[3].at[axis] - c[2].at[axis];
-
-        p->first[i] = (float)(0.5 * (step0 + step1));
-        p->second[0][i] = (float)(step1 - step0);
-        p->second[1][i] = (float)(step2 - step1);
-    }
-    p->top = top_rate(h, path, block);
-}
-
-static double length_of(const struct path *path, uint32_t block)
-{
-    return (double)(path_end(path, block) - path_start(path, block));
-}
-
-/* Does the block go on with the curve of the one before? */
-static bool goes_on(const struct hold *h, const struct path *path, uint32_t block)
-{
-    return path_at(path, block)->smooth && path_at(path, block - 1)->end == JUNCTION_PASSED &&
-           length_of(path, block) == h->length;
-}
-
-static void read_pieces(struct hold *h, const struct path *path)
-{
-    TAKT_ASSERT(h->end - h->block <= HOLD_PIECES_MAX);
-    for (unsigned i = 0;
-         i < READ_MAX && !h->whole && h->end != path->closed && h->end - h->block < HOLD_PIECES_MAX;
-         i++) {
-        h->whole = h->end != h->block && !goes_on(h, path, h->end);
-        if (!h->whole) {
-            read_piece(h, path, h->end++);
-        }
-    }
-}
-
-static void take_limits(struct hold *h, const struct plan_limits *limits)
-{
-    const double t = limits->cycle_s;
-
-    h->axes = 0;
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if ((limits->axes >> i & 1U) != 0) {
-            h->axis[h->axes] = (uint8_t)i;
-            h->velocity[h->axes] = (float)(limits->velocity_mm_s[i] * t);
-            h->acceleration[h->axes] = (float)(limits->acceleration_mm_s2[i] * t * t);
-            h->jerk[h->axes] = (float)(limits->jerk_mm_s3[i] * t * t * t);
-            h->axes++;
-        }
-    }
-}
-
 /* -- the way on -- */
 
 /* u + r t + q t^2/2 + w t^3/6 */
@@ -155,23 +83,17 @@ static void try_advance(struct hold_trial *s, float w, float t)
     s->change += t * w;
 }
 
-/* Does the curve end before a block? */
-static bool is_behind(const struct path *path, uint32_t block)
-{
-    return block == path->closed || path_at(path, block - 1)->end == JUNCTION_STOP;
-}
-
-/* Goes on past the blocks that are not too fast for the present rate: braking they stay so. */
+/* Goes on past the pieces that are not too fast for the present rate: braking they stay so. */
 static void pass_clear(struct hold *h, const struct path *path)
 {
     const float rate = (float)h->place.rate;
 
-    if (h->place.change > 0.0 || (int32_t)(h->clear - h->block) < 0) {
-        h->clear = h->block;
+    if (h->place.change > 0.0 || (int32_t)(h->clear - h->here) < 0) {
+        h->clear = h->here;
     }
     for (unsigned i = 0; i < CLEAR_MAX && !(h->place.change > 0.0) &&
-                         (h->clear == h->block || !is_behind(path, h->clear)) &&
-                         top_rate(h, path, h->clear) >= rate;
+                         (h->clear == h->here || !takt_hold_is_behind(h, path, h->clear)) &&
+                         takt_hold_top(h, path, h->clear) >= rate;
          i++) {
         h->clear++;
     }
@@ -186,15 +108,15 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
 {
     const float b = (float)(0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES);
 
-    TAKT_ASSERT((int32_t)(h->clear - h->block) >= 0);
+    TAKT_ASSERT((int32_t)(h->clear - h->here) >= 0);
     for (uint32_t i = 0; i < BLOCKS_MAX; i++) {
-        const uint32_t block = h->clear + i;
-        const float gap = (float)(block - h->block) - ahead;
+        const uint32_t piece = h->clear + i;
+        const float gap = (float)(piece - h->here) - ahead;
 
-        if (gap >= s->rate * b || (block != h->block && is_behind(path, block))) {
+        if (gap >= s->rate * b || (piece != h->here && takt_hold_is_behind(h, path, piece))) {
             return true;
         }
-        const float top = top_rate(h, path, block);
+        const float top = takt_hold_top(h, path, piece);
 
         if (s->rate > top && gap < top * b) {
             return false;
@@ -213,14 +135,17 @@ static bool reference_can_take(const struct hold *h, const struct path *path,
 {
     const double rate = (double)s->rate * (1.0 + TRIAL_PART);
     const double ahead = (double)s->at + 0.5 * (l->window + 3.0) * rate;
-    const uint64_t at = path_start(path, h->block) + (uint64_t)(ahead * h->length);
+    const uint64_t at = takt_hold_start(h, path) + (uint64_t)(ahead * h->length);
 
-    return (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
-           takt_reference_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
+    const double feed = rate * h->length / PATH_UNITS_PER_MM;
+
+    return (h->smooth || takt_reference_could_rest(l, at, feed, path_end(path, h->within))) &&
+           (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
+           takt_reference_could_be(l, at, feed, stop);
 }
 
 /* Does the change go to another one by w within all limits? Neither is on the other side of 0. */
-static bool can_change(const struct hold *h, struct hold_trial *s, float to, float w)
+static bool can_change(struct hold *h, struct hold_trial *s, float to, float w)
 {
     const float t = (to - s->change) / (w * (float)EASE_PARTS);
 
@@ -254,7 +179,7 @@ static float highest_rate(const struct hold *h, const struct reference *l)
 }
 
 /* Does a change above 0 go there? */
-static bool can_turn(const struct hold *h, struct hold_trial *s, float e)
+static bool can_turn(struct hold *h, struct hold_trial *s, float e)
 {
     return s->change <= 0.0f || (can_change(h, s, 0.0f, -e) && s->rate <= h->most);
 }
@@ -266,7 +191,7 @@ static float least_ease(const struct hold_trial *s)
 }
 
 /* To rest: the change goes by -e to -c, and back to 0 by e: r + (q |q| - c^2)/2e = c^2/2e where q > 0, else with -q^2. */
-static bool can_rest(const struct hold *h, struct hold_trial s, float e, struct hold_ending *ending)
+static bool can_rest(struct hold *h, struct hold_trial s, float e, struct hold_ending *ending)
 {
     const float peak = single_sqrt(e * s.rate + 0.5f * s.change * s.change);
 
@@ -391,6 +316,7 @@ static bool find_step(struct hold *h, const struct path *path, const struct refe
 
     h->turn++;
     h->refusals = 0;
+    h->looked = 0;
     h->most = stop ? highest_rate(h, l) : SINGLE_INFINITY;
     if (stop && rate <= 2.0f * hardest &&
         try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {
@@ -427,18 +353,18 @@ static bool has_arrived(const struct hold *h, const struct path *path, const str
 /* Counts from the start of the block that the setpoint is in. */
 static void pass_blocks(struct hold *h)
 {
-    TAKT_ASSERT((int32_t)(h->end - h->block) > 0 && h->place.at >= 0.0);
-    while (h->place.at >= 1.0 && h->block + 1 != h->end) {
+    TAKT_ASSERT((int32_t)(h->end - h->here) > 0 && h->place.at >= 0.0);
+    while (h->place.at >= 1.0 && h->here + 1 != h->end) {
         h->place.at -= 1.0;
-        h->block++;
+        h->here++;
     }
 }
 
-bool takt_hold_step(struct hold *h, const struct path *path, const struct reference *l, bool stop)
+bool takt_hold_step(struct hold *h, struct path *path, const struct reference *l, bool stop)
 {
     TAKT_ASSERT(h->place.rate >= 0.0 && h->length > 0.0);
-    read_pieces(h, path);
-    h->clear = stop == h->stops ? h->clear : h->block;
+    takt_hold_read(h, path);
+    h->clear = stop == h->stops ? h->clear : h->here;
     pass_clear(h, path);
     h->step = stop == h->stops ? h->step : 1.0f;
     h->stops = stop;
@@ -459,35 +385,21 @@ bool takt_hold_step(struct hold *h, const struct path *path, const struct refere
     return true;
 }
 
-/* The pieces ahead, from the path's first block on; those that are known stay. */
-static void look_ahead(struct hold *h, const struct path *path, bool anew)
-{
-    if (anew || (int32_t)(h->end - path->first) <= 0) {
-        take_limits(h, &path->limits);
-        h->end = path->first;
-        h->whole = false;
-        h->length = length_of(path, path->first);
-        TAKT_ASSERT(h->length > 0.0);
-        h->per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
-        h->clear = path->first;
-        h->step = 1.0f;
-    }
-    h->block = path->first;
-    read_pieces(h, path);
-}
-
 /* The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are as good as at rest. */
-bool takt_hold_begin(struct hold *h, const struct path *path, const struct reference *l, double at,
-                     const double way[2], bool anew)
+bool takt_hold_begin(struct hold *h, struct path *path, const struct reference *l, double at,
+                     const double way[2])
 {
-    look_ahead(h, path, anew);
+    const double fastest = maths_max(way[0], l->feed * PATH_UNITS_PER_MM);
+
+    if (!takt_hold_look(h, path, at, fastest)) {
+        return false;
+    }
     h->step = 1.0f;
-    h->place.at = at / h->length;
     h->place.change = (way[0] - way[1]) / h->length;
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ending.ease = 0.0;
     h->stops = true;
-    h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
+    h->top = maths_max(h->place.rate, (double)takt_hold_top(h, path, h->here));
     pass_clear(h, path);
     return h->place.rate > 0.0 && find_step(h, path, l, true);
 }

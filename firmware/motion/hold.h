@@ -1,5 +1,5 @@
 /*
- * A feed hold on a smoothed curve, and the start after it: as quickly as the axes can at each place of the curve.
+ * A feed hold on a smoothed curve or an arc, and the start after it: as quickly as the axes can at each place of the curve.
  *
  * The place on the curve u, in pieces, moves by its rate r = u', its change q = r' and a constant w = q' in each cycle:
  *
@@ -17,19 +17,25 @@
 #include "plan/path.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-/* Pieces of the curve that are looked at, from the setpoint's on. */
+/* Pieces of the curve that are looked at, from the setpoint's on: at most, and at least. */
 #define HOLD_PIECES_MAX 24
+#define HOLD_PIECES_MIN 8
 
-/* Derivatives of a piece, by axis: mm (rad) per piece and per piece^2. The second one is linear between its ends. */
-struct hold_piece {
-    float first[AXIS_COUNT];
-    float second[2][AXIS_COUNT];
-    float top; /* its highest rate, whatever the overrides are: pieces a cycle */
-};
+/*
+ * A piece is stored as its derivatives, by axis: mm (rad) per piece, and per piece^2 where it begins and where it ends; the second
+ * one is linear between. Behind them its highest rate, whatever the overrides are: pieces a cycle.
+ *
+ *     first[axes] | second[axes] | second_end[axes] | top
+ */
+static inline unsigned hold_stride(unsigned axes)
+{
+    return 3 * axes + 1;
+}
 
-/* Where the setpoint is, in pieces from the start of a block, and how it moves. */
+/* Where the setpoint is, in pieces from the start of one, and how it moves. */
 struct hold_state {
     double at;
     double rate;
@@ -46,41 +52,63 @@ struct hold_ending {
 };
 
 struct hold {
-    unsigned axes; /* those of the machine, one after the other */
+    unsigned axes;   /* those of the machine, one after the other */
+    unsigned pieces; /* that there is room for: */
+    float *store;    /* the caller's memory */
     uint8_t axis[AXIS_COUNT];
     float velocity[AXIS_COUNT]; /* mm (rad) per cycle, cycle2 and cycle3 */
     float acceleration[AXIS_COUNT];
     float jerk[AXIS_COUNT];
-    uint32_t block; /* of the path, at whose start place.at is 0 */
-    uint32_t end;   /* the pieces of the blocks from it on to this one are known */
-    bool whole;     /* and no further piece goes on with the curve */
+    bool
+        smooth; /* pieces are the path's blocks; else parts of one block, counted from its start: */
+    bool whole; /* no further piece goes on with the curve */
+    uint32_t within;
+    uint32_t parts; /* so many lie on it, */
+    float part_top; /* and that is the highest rate there */
+    uint32_t here;  /* the piece at whose start place.at is 0 */
+    uint32_t end;   /* the pieces from it on to before this one are known */
     double length;  /* path units of a piece */
     float per_mm_s; /* pieces a cycle for mm/s of path */
-    uint32_t clear; /* blocks from the first to before this one are fast enough for the rate */
+    uint8_t plane
+        [2]; /* axes that an arc turns, among those above, and by how much on a piece: a line by 0 */
+    float turn_cos, turn_sin;
+    float off_second; /* derivatives of an arc differ from those of its pieces by this at most */
+    float off_third;
+    uint32_t clear; /* pieces from the first to before this one are fast enough for the rate */
     struct hold_state place;
     double moved; /* pieces, in the last cycle */
     struct hold_ending ending;
     float most;        /* no higher does the rate get in coming to rest */
     float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
     unsigned turn;     /* counts cycles */
+    unsigned looked;   /* pieces that have been looked at in this cycle */
     unsigned refusals; /* of the trapezoidal reference, in this cycle */
     bool stops;        /* it was to stop in the last cycle */
     double top;        /* rate that the curve was made for, or more */
-    struct hold_piece piece[HOLD_PIECES_MAX];
 };
+
+/* Piece k, if it is known. */
+static inline const float *hold_piece(const struct hold *h, uint32_t k)
+{
+    return h->store + (size_t)(k % h->pieces) * hold_stride(h->axes);
+}
+
+/* Before it is asked for the first time: the axes, and memory for pieces. False: that is too little. */
+bool takt_hold_prepare(struct hold *h, const struct plan_limits *limits, float *store,
+                       size_t floats);
 
 /*
  * Can it take over in this cycle, and slow down? The setpoint is at a position of the path's first block, path units, and
- * has been moved by these ways in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are
- * read each time, so that it may be able to in a later cycle.
+ * has been moved by these ways in the last two cycles. Some pieces ahead are read each time, so that it may be able to in a
+ * later cycle.
  */
-bool takt_hold_begin(struct hold *h, const struct path *path, const struct reference *l, double at,
-                     const double way[2], bool anew);
+bool takt_hold_begin(struct hold *h, struct path *path, const struct reference *l, double at,
+                     const double way[2]);
 
 /* One cycle: slows down as hard as it can, or speeds up. False: it cannot go on by itself; the rate is constant. */
-bool takt_hold_step(struct hold *h, const struct path *path, const struct reference *l, bool stop);
+bool takt_hold_step(struct hold *h, struct path *path, const struct reference *l, bool stop);
 
-/* Path units from the start of its block, and in a cycle. */
+/* Path units from the start of its piece, and in a cycle. */
 static inline double hold_at(const struct hold *h)
 {
     return h->place.at * h->length;

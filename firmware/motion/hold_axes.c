@@ -12,6 +12,9 @@
 /* Rounding. */
 #define SLACK 1e-5f
 
+/* What is tried in a cycle is looked at on so many pieces in all: what was found before can always be gone on with. */
+#define LOOKED_MAX 72
+
 static inline struct range between(float a, float b)
 {
     return a < b ? (struct range){a, b} : (struct range){b, a};
@@ -74,56 +77,70 @@ static inline struct range by_sign(struct range a, float sign)
  * Axis i on a piece from f to g of it. Both sums by the sign of the change:
  *     x' |q| + sign x'' r^2            x' (sign w) + 3 x'' r |q| + sign x''' r^3
  */
-static bool axis_can(const struct hold *h, const struct hold_piece *piece, unsigned i, float f,
-                     float g, const struct part *p)
+static bool axis_can(const struct hold *h, const float *piece, unsigned i, float f, float g,
+                     const struct part *p)
 {
-    const float start = piece->first[i];
-    const float bend = piece->second[0][i];
-    const float third = piece->second[1][i] - bend;
+    const float start = piece[i];
+    const float bend = piece[h->axes + i];
+    const float third = piece[2 * h->axes + i] - bend;
+
+    if (start == 0.0f && bend == 0.0f && third == 0.0f) {
+        return true;
+    }
+    const float bent = bend != 0.0f || third != 0.0f ? 1.0f : 0.0f;
+    const float off = bent * h->off_second;
+    const float off_third = bent * h->off_third;
     const float twist = p->sign * third;
-    const float sag = single_abs(third) * (g - f) * (g - f) * 0.125f;
+    const float sag = single_abs(third) * (g - f) * (g - f) * 0.125f + off;
     const struct range at =
         between(start + f * (bend + 0.5f * f * third), start + g * (bend + 0.5f * g * third));
     const struct range first = {at.low - sag, at.high + sag};
-    const struct range second = between(bend + f * third, bend + g * third);
+    const struct range bends = between(bend + f * third, bend + g * third);
+    const struct range second = {bends.low - off, bends.high + off};
     const struct range a = plus(times(first, p->change), times(by_sign(second, p->sign), p->rate2));
-    const struct range j = plus(plus(between(first.low * p->w, first.high * p->w),
-                                     times((struct range){twist, twist}, p->rate3)),
-                                times(second, p->three_rate_change));
+    const struct range j =
+        plus(plus(between(first.low * p->w, first.high * p->w),
+                  times((struct range){twist - off_third, twist + off_third}, p->rate3)),
+             times(second, p->three_rate_change));
 
     return is_within(times(first, p->rate), h->velocity[i] * (1.0f + SLACK)) &&
            is_within(a, h->acceleration[i]) && is_within(j, h->jerk[i]);
 }
 
 /* The feed and the axes on a piece. */
-static bool piece_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
+static bool piece_can(struct hold *h, uint32_t k, float f, float g, const struct part *p)
 {
-    if (p->rate.high > hold_piece_at(h, block)->top) {
+    const float *piece = hold_piece(h, k);
+
+    if (++h->looked > LOOKED_MAX) {
+        return false;
+    }
+    if (p->rate.high > piece[3 * h->axes]) {
         return false;
     }
     for (unsigned i = 0; i < h->axes; i++) {
-        if (!axis_can(h, hold_piece_at(h, block), i, f, g, p)) {
+        if (!axis_can(h, piece, i, f, g, p)) {
             return false;
         }
     }
     return true;
 }
 
-bool takt_hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
+bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
                       float w)
 {
     const uint32_t first = (uint32_t)a->at;
     const uint32_t last = (uint32_t)b->at;
     const struct part p = part_of(a, b, w);
 
-    if (b->at < a->at || last >= h->end - h->block) {
+    if (b->at < a->at || last >= h->end - h->here) {
         return false;
     }
     for (uint32_t i = first; i <= last; i++) {
         const float f = i == first ? a->at - (float)i : 0.0f;
         const float g = i == last ? b->at - (float)i : 1.0f;
 
-        if (!piece_can(h, h->block + i, f, g, &p)) {
+        if (!piece_can(h, h->here + i, f, g, &p)) {
             return false;
         }
     }
@@ -154,16 +171,17 @@ static struct range over(struct range left, float x1, struct range w)
 
 struct range takt_hold_steps(const struct hold *h)
 {
-    const struct hold_piece *p = hold_piece_at(h, h->block);
+    const float *p = hold_piece(h, h->here);
     const float f = (float)h->place.at;
     const float most = CHANGE_PART * (float)h->top;
     struct range w = {-most, most};
 
     for (unsigned i = 0; i < h->axes; i++) {
-        const float third = p->second[1][i] - p->second[0][i];
-        const float first = p->first[i] + f * (p->second[0][i] + 0.5f * f * third);
+        const float bend = p[h->axes + i];
+        const float third = p[2 * h->axes + i] - bend;
+        const float first = p[i] + f * (bend + 0.5f * f * third);
 
-        w = over(left_of(h, i, first, p->second[0][i] + f * third, third), first, w);
+        w = over(left_of(h, i, first, bend + f * third, third), first, w);
     }
     return w;
 }

@@ -23,13 +23,8 @@ struct hold_trial {
     float change;
 };
 
-static inline const struct hold_piece *hold_piece_at(const struct hold *h, uint32_t block)
-{
-    return &h->piece[block % HOLD_PIECES_MAX];
-}
-
 /* Can it go from one state to another by w, on pieces that are known, and not back? In one direction of the change. */
-bool takt_hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
+bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
                       float w);
 
 /* w between which every axis keeps A and J where it is; limited where none moves. */

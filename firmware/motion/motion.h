@@ -46,11 +46,14 @@ struct motion_operator {
     double spindle_rev_s; /* >= 0; 0 holds them */
 };
 
-/* A smoothed curve has a short window: a hold of it is kept behind its inputs. */
-#define MOTION_INPUTS_MAX 128
+/* A hold lies at the end of the averages' memory, and the pieces that it looks at where their inputs leave room. */
+#define MOTION_STORE_MAX                                                                           \
+    ((sizeof(struct average) - offsetof(struct average, input) - sizeof(struct hold)) /            \
+     sizeof(float))
 
 struct motion_beside {
-    uint8_t average[offsetof(struct average, input) + MOTION_INPUTS_MAX * sizeof(uint64_t)];
+    uint8_t average[offsetof(struct average, input)];
+    float store[MOTION_STORE_MAX];
     struct hold hold;
 };
 
@@ -80,7 +83,7 @@ struct motion {
     struct reference reference;
     union {
         struct average average;
-        struct motion_beside beside; /* where a span's window is short */
+        struct motion_beside beside;
     } mover;
     unsigned active;  /* the ceiling in use, of the path's two */
     bool has_ceiling; /* there has been one */

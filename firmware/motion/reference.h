@@ -115,6 +115,8 @@ void takt_reference_leave_halt(struct reference *l);
  * overrides, else as they are.
  */
 bool takt_reference_could_be(const struct reference *l, uint64_t at, double feed, bool highest);
+/* Could it come to rest from there before another position, whatever the ceiling asks for? */
+bool takt_reference_could_rest(const struct reference *l, uint64_t at, double feed, uint64_t end);
 /*
  * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
  * cycle, in which it keeps it: third differences reach over that many more.

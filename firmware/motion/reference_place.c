@@ -294,14 +294,57 @@ bool takt_reference_could_be(const struct reference *l, uint64_t at, double feed
     return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, feed * feed, highest);
 }
 
+/* It keeps its feed for a cycle first; third differences reach over some more. */
+#define REST_LATER_CYCLES 4.0
+
+bool takt_reference_could_rest(const struct reference *l, uint64_t at, double feed, uint64_t end)
+{
+    const struct ceiling *c = l->here.ceiling;
+    const double gap_mm = path_mm(at, end) - REST_LATER_CYCLES * feed;
+    const double end_mm = path_mm(c->origin, end);
+    double a = MATHS_INFINITY;
+
+    for (uint32_t k = l->here.piece; k < l->here.piece + REFERENCE_PIECES_MAX && k < c->count;
+         k++) {
+        a = maths_min(a, (double)c->piece[k].acceleration);
+        if (feed * feed > 2.0 * a * gap_mm) {
+            return false;
+        }
+        if (c->end_mm[k] >= end_mm || reference_is_last_of_span(&c->piece[k])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What binds from the setpoint on to piece k, in its span: that of further pieces, where it has been, does not. */
+static void low_anew(struct reference_place *p, uint32_t k, uint64_t setpoint)
+{
+    uint32_t first = k;
+
+    while (first > 0 && k - first < REFERENCE_PIECES_MAX &&
+           !reference_is_last_of_span(&p->ceiling->piece[first - 1]) &&
+           !reference_is_beyond(setpoint, path_ceiling_leave(p->ceiling, first - 1))) {
+        first--;
+    }
+    p->low_count = 0;
+    for (uint32_t i = first; i <= k; i++) {
+        low_push(p, i);
+    }
+}
+
 /* The piece that lies where it is, whatever it has been in. */
-static void find_piece(struct reference_place *p, double x)
+static void find_piece(struct reference_place *p, double x, uint64_t setpoint)
 {
     const struct ceiling *c = p->ceiling;
+    const uint32_t before = p->piece;
 
     for (unsigned i = 0; i < REFERENCE_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1];
          i++) {
         p->piece--;
+    }
+    if (p->piece != before) {
+        low_anew(p, p->piece, setpoint);
     }
     for (unsigned i = 0;
          i < REFERENCE_PIECES_MAX && p->piece + 1 < c->count && x >= c->end_mm[p->piece] &&
@@ -322,7 +365,7 @@ void takt_reference_follow(struct reference *l, uint64_t at, double feed, uint64
     l->owed_mm = 0.0;
     l->abrupt = false;
     l->since_plus = l->since_minus = (uint32_t)l->window - 1;
-    find_piece(p, path_mm(c->origin, at));
+    find_piece(p, path_mm(c->origin, at), setpoint);
     const uint64_t start = takt_ceiling_start(c, p->piece);
 
     p->late = false;

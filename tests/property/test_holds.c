@@ -1,6 +1,6 @@
 /*
- * Feed holds on smoothed paths, from any moment: on machines drawn by their dimensionless numbers the axes come to rest
- * within a time that their limits tell, and go on afterwards, and no limit is broken.
+ * Feed holds on smoothed and exact paths, from any moment: on machines drawn by their dimensionless numbers the axes come to
+ * rest within a time that their limits tell, and go on afterwards, and no limit is broken.
  *
  * test_holds NUMBER runs this many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints
  * how long the holds took, in parts of V/A + A/J.
@@ -49,6 +49,7 @@ struct run {
     struct chain chance; /* of the operator */
     struct plan_limits limits;
     enum chain_family family;
+    enum move_path path;
     double tolerance_mm;
     unsigned moves;
     unsigned pushed;
@@ -102,9 +103,10 @@ static void random_machine(struct run *r)
     }
 }
 
-static void set_up_run(struct run *r, unsigned seed)
+static void set_up_run(struct run *r, unsigned seed, enum move_path mode)
 {
     memset(r, 0, sizeof(*r));
+    r->path = mode;
     r->chain.seed = UINT64_C(0x9e3779b97f4a7c15) * seed;
     r->chance.seed = UINT64_C(0xd1b54a32d192ed03) * seed;
     random_machine(r);
@@ -116,11 +118,11 @@ static void set_up_run(struct run *r, unsigned seed)
 }
 
 /* Where the axes could be far too fast within a few cycles: so soon are the holds. */
-static void set_up_slow_run(struct run *r, unsigned seed)
+static void set_up_slow_run(struct run *r, unsigned seed, enum move_path mode)
 {
     double v = MATHS_INFINITY;
 
-    set_up_run(r, seed);
+    set_up_run(r, seed, mode);
     for (int i = 0; i < CHAIN_AXES; i++) {
         v = maths_min(v, r->limits.velocity_mm_s[i]);
     }
@@ -136,7 +138,7 @@ static void push_next(struct run *r)
 
     if (r->pushed < r->moves) {
         m = chain_next(&r->chain, r->family, r->pushed);
-        m.path = PATH_BLEND;
+        m.path = r->path;
         m.tolerance_mm = r->tolerance_mm;
         if (r->feed_mm_s > 0.0) {
             m.kind = m.kind == MOVE_RAPID ? MOVE_FEED : m.kind;
@@ -234,14 +236,16 @@ static enum motion_result run_program(struct run *r)
     return result;
 }
 
-static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(void)
+static void verify_holds(enum move_path mode)
 {
     unsigned failed = 0;
     unsigned longest_seed = 0;
     double longest = 0.0;
 
+    memset(taken, 0, sizeof taken);
+    holds = slow = 0;
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
-        set_up_run(&run, seed);
+        set_up_run(&run, seed, mode);
         const enum motion_result result = run_program(&run);
 
         if (result != MOTION_DONE || run.verifier.velocity > 1.0001 ||
@@ -266,13 +270,22 @@ static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(
     TEST_ASSERT_LESS_OR_EQUAL_UINT(holds * SLOW_OF_THOUSAND, 1000 * slow);
 }
 
-/* Also where a hold begins while the axes speed up after another. */
-static void test_no_programmed_feed_is_exceeded(void)
+static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(void)
+{
+    verify_holds(PATH_BLEND);
+}
+
+static void test_they_do_on_the_exact_path(void)
+{
+    verify_holds(PATH_EXACT);
+}
+
+static void verify_feeds(enum move_path mode)
 {
     unsigned failed = 0;
 
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
-        set_up_slow_run(&run, seed);
+        set_up_slow_run(&run, seed, mode);
         (void)run_program(&run);
         if (run.feed_part > 1.001 || run.verifier.acceleration > 1.0001 ||
             run.verifier.jerk > 1.001) {
@@ -284,11 +297,24 @@ static void test_no_programmed_feed_is_exceeded(void)
     TEST_ASSERT_EQUAL_UINT(0, failed);
 }
 
+/* Also where a hold begins while the axes speed up after another. */
+static void test_no_programmed_feed_is_exceeded(void)
+{
+    verify_feeds(PATH_BLEND);
+}
+
+static void test_none_is_exceeded_on_the_exact_path(void)
+{
+    verify_feeds(PATH_EXACT);
+}
+
 int main(int argc, char **argv)
 {
     read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_axes_come_to_rest_within_what_their_limits_tell_and_break_none);
+    RUN_TEST(test_they_do_on_the_exact_path);
     RUN_TEST(test_no_programmed_feed_is_exceeded);
+    RUN_TEST(test_none_is_exceeded_on_the_exact_path);
     return UNITY_END();
 }

@@ -134,12 +134,12 @@ static void test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_t
     asked.hold = true;
     run(10);
     TEST_ASSERT_TRUE(motion.holds);
-    first = h->block;
+    first = h->here;
     while (!takt_motion_rests(&motion)) {
         run(1);
-        TEST_ASSERT_GREATER_THAN_INT(0, (int32_t)(h->clear - h->block));
+        TEST_ASSERT_GREATER_THAN_INT(0, (int32_t)(h->clear - h->here));
     }
-    TEST_ASSERT_GREATER_THAN_UINT32(first + 8, h->block);
+    TEST_ASSERT_GREATER_THAN_UINT32(first + 8, h->here);
 }
 
 int main(void)
