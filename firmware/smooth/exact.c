@@ -1,6 +1,7 @@
 #include "smooth/exact.h"
 
 #include "smooth/exact_parts.h"
+#include "smooth/route_curved.h"
 #include "smooth/single.h"
 
 /* In single precision. */
@@ -10,14 +11,9 @@ static const float arc_acceleration = (float)ARC_ACCELERATION;
 static const float arc_jerk = (float)ARC_JERK;
 static const float ramp_normal = (float)RAMP_NORMAL;
 static const float ramp_along = (float)RAMP_ALONG;
-static const float override_max = (float)BLOCK_OVERRIDE_MAX;
 static const float cycles_apart = (float)JUNCTION_CYCLES_APART;
 static const float least_cycles = (float)JUNCTION_LEAST_CYCLES;
 static const float worth = (float)JUNCTION_WORTH;
-
-/* Steps in which a feed is looked for that can be held. */
-#define SLOWER     0.9f
-#define SLOWER_MAX 64
 
 /* A curved element that is no arc is gone along in lines that leave it by this part of the tolerance. */
 #define STRAIGHT_PART 0.02f
@@ -112,9 +108,9 @@ struct arc_limits {
     float radius;
 };
 
-/* An axis in its plane may have all of the acceleration for itself, others but their part of it. */
-static float acceleration_along(const struct route *r, const struct smooth_limits *machine,
-                                uint32_t index, const float k[])
+/* What axes allow along a curved element: those in its plane may be along it, of others their part. */
+static float along_curved(const struct route *r, const double limit[], uint32_t index,
+                          const float k[])
 {
     float d[AXIS_COUNT];
     float most = SINGLE_INFINITY;
@@ -122,9 +118,9 @@ static float acceleration_along(const struct route *r, const struct smooth_limit
     (void)takt_route_direction(r, index, route_element(r, index)->start_mm, d);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float part = k[i] != 0.0f ? 1.0f : single_abs(d[i]);
-        const float a = r->slots.weight[i] * (float)machine->acceleration_mm_s2[r->slots.axis[i]];
+        const float all = r->slots.weight[i] * (float)limit[r->slots.axis[i]];
 
-        most = part > 0.0f ? single_min(most, a / part) : most;
+        most = part > 0.0f ? single_min(most, all / part) : most;
     }
     return most;
 }
@@ -140,46 +136,7 @@ static void bound_ramps(const struct arc_limits *b, struct course *c)
     c->jerk = ramp_along * b->jerk - c->feed * normal / b->radius;
 }
 
-/* To rest from its feed while the axes speed up, by a law of w windows: v/a + 2 w a/j, a^2 <= v j/w. */
-static float rest_time(const struct course *c, float windows)
-{
-    const float j = c->jerk / windows;
-    const float a = single_min(c->acceleration, single_sqrt(c->feed * j));
-
-    return c->feed / a + 2.0f * a / j;
-}
-
-/* How long a hold takes at a feed, at worst: plan keeps what the highest override needs. */
-static float hold_time(const struct arc_limits *b, float feed, float windows)
-{
-    struct course c = {.feed = override_max * feed};
-
-    bound_ramps(b, &c);
-    c.feed = feed;
-    return c.jerk > 0.0f && c.acceleration > 0.0f ? rest_time(&c, windows) : SINGLE_INFINITY;
-}
-
-/* How long one takes on a line at the highest feed, of the slowest axis that moves. */
-static float hold_time_on_line(const struct route *r, const struct smooth_limits *machine)
-{
-    float longest = 0.0f;
-
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct course c = {.feed = (float)machine->velocity_mm_s[i],
-                                 .acceleration = (float)machine->acceleration_mm_s2[i],
-                                 .jerk = (float)machine->jerk_mm_s3[i]};
-
-        if ((r->moved >> i & 1U) != 0) {
-            longest = single_max(longest, rest_time(&c, (float)machine->windows));
-        }
-    }
-    return longest;
-}
-
-/*
- * v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A. A turn leaves the less for braking the faster it is: it is gone along no
- * faster than it can be held on in the time that a line takes.
- */
+/* v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A: of the machine's limits, which a smoothed curve may not have all of. */
 static void bound_curved(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                          struct course *c)
 {
@@ -187,17 +144,16 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
     float k[AXIS_COUNT];
     const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
     const float curvature = takt_route_curvature(r, index, e->start_mm, k); /* k is used below */
-    const struct arc_limits b = {.jerk = (joined ? 1.0f - junction_share : 1.0f) * e->along.jerk,
+    const struct arc_limits b = {.jerk = (joined ? 1.0f - junction_share : 1.0f) *
+                                         along_curved(r, machine->jerk_mm_s3, index, k),
                                  .radius = 1.0f / curvature,
-                                 .acceleration = acceleration_along(r, machine, index, k)};
-    const float most = hold_time_on_line(r, machine);
+                                 .acceleration =
+                                     along_curved(r, machine->acceleration_mm_s2, index, k)};
 
+    c->feed = single_min(takt_route_per_mm(r, index) * e->programmed_mm_s,
+                         along_curved(r, machine->velocity_mm_s, index, k));
     c->feed = single_min(c->feed, takt_single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
     c->feed = single_min(c->feed, single_sqrt(arc_acceleration * b.acceleration * b.radius));
-    for (unsigned i = 0; i < SLOWER_MAX && hold_time(&b, c->feed, (float)machine->windows) > most;
-         i++) {
-        c->feed *= SLOWER;
-    }
     bound_ramps(&b, c);
 }
 
@@ -383,16 +339,6 @@ static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
     return arc || turns;
 }
 
-/* The feed of an arc from a place on: route goes by for its length. */
-static void limit_arc(const struct route *r, const struct smooth_limits *machine, uint32_t element,
-                      double at_mm, const struct curve *arc, struct move *move)
-{
-    const double feed = (double)course_of(r, machine, 0.0, element).feed;
-
-    move->feed_mm_s =
-        maths_min(move->feed_mm_s, feed * arc->length_mm / (route_end_of(r, element) - at_mm));
-}
-
 /* To a place of an element: as it is programmed, or in a line. False: the axes are there. */
 static bool go_to(const struct route *r, uint32_t element, double to_mm, const struct point *start,
                   double p[], struct move *move, struct curve *curve)
@@ -402,8 +348,8 @@ static bool go_to(const struct route *r, uint32_t element, double to_mm, const s
     return takt_move_curve(move, start, curve);
 }
 
-bool takt_exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
-                     struct move *move, struct curve *curve)
+bool takt_exact_next(struct window *w, const struct route *r, struct move *move,
+                     struct curve *curve)
 {
     const uint32_t element = w->element[0];
     const double at_mm = w->at_mm[0];
@@ -424,9 +370,6 @@ bool takt_exact_next(struct window *w, const struct route *r, const struct smoot
         to_mm = arc ? route_end_of(r, element) : straight_end(r, element, at_mm);
         move->kind = arc ? kind : line;
         goes = go_to(r, element, to_mm, &start, p, move, curve);
-    }
-    if (arc && goes && move->kind == kind) {
-        limit_arc(r, machine, element, at_mm, curve, move);
     }
     takt_window_stand(w, r, p, to_mm, element);
     return goes;

@@ -18,7 +18,7 @@ float takt_exact_time(const struct route *r, const struct smooth_limits *machine
  * The next motion from where the window's axes rest: along the element to its end, after a line to it where they are not
  * on it and it is curved. The window rests at its end then. False: they are there already.
  */
-bool takt_exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
-                     struct move *move, struct curve *curve);
+bool takt_exact_next(struct window *w, const struct route *r, struct move *move,
+                     struct curve *curve);
 
 #endif

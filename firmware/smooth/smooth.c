@@ -320,7 +320,7 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
 {
     const uint32_t element = s->window.element[0];
     const uint32_t told = takt_smooth_tell(s, element);
-    const bool goes = takt_exact_next(&s->window, &s->route, &s->limits, &s->move, curve);
+    const bool goes = takt_exact_next(&s->window, &s->route, &s->move, curve);
     const bool ends = s->window.at_mm[0] >= route_end_of(&s->route, element);
 
     TAKT_ASSERT(s->exact);
