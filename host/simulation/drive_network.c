@@ -168,7 +168,6 @@ enum command_status drive_network_open(struct drive_network *network,
 {
     enum command_status status = STATUS_DONE;
 
-    memset(network, 0, sizeof *network);
     network->buses = takt_machine_bus_count(&setup->machine);
     network->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
     network->script = options->script;
