@@ -125,20 +125,14 @@ static unsigned count_stuffed(struct stream_bits *stream)
     return stream->stuffed;
 }
 
-/* 11-bit identifier: start 0, identifier 11, RTR, IDE 0, r0 0, length 4: 19 bits, five put before them. */
-static unsigned count_standard(const struct frame_bits *tables, unsigned rank, unsigned length,
-                               const uint8_t *data, unsigned data_length)
-{
-    struct stream_bits stream = begin_stream(tables, state_of(1, 0));
-    add_header(&stream, rank << 6 | length, HEADER_PAD, HEADER_BYTES, data_length);
-    add_data(&stream, data, data_length);
-    return UNSTUFFED + 8u * data_length + count_stuffed(&stream);
-}
-
+/* Start 0, identifier 11, RTR, IDE 0, r0 0, length 4: 19 bits, five put before them. */
 unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame)
 {
-    return count_standard(tables, can_rank(frame->id), frame->length, frame->data,
-                          can_data_length(frame));
+    struct stream_bits stream = begin_stream(tables, state_of(1, 0));
+    unsigned header = can_rank(frame->id) << 6 | frame->length, length = can_data_length(frame);
+    add_header(&stream, header, HEADER_PAD, HEADER_BYTES, length);
+    add_data(&stream, frame->data, length);
+    return UNSTUFFED + 8u * length + count_stuffed(&stream);
 }
 
 /*
@@ -158,11 +152,11 @@ static unsigned count_extended(const struct frame_bits *tables, const struct wir
     return UNSTUFFED_EXTENDED + 8u * length + count_stuffed(&stream);
 }
 
-static unsigned count_wire_standard(const struct frame_bits *tables, const struct wire_frame *frame)
+static unsigned count_standard(const struct frame_bits *tables, const struct wire_frame *frame)
 {
-    bool remote = frame->flags & WIRE_REMOTE;
-    return count_standard(tables, frame->id << 1 | remote, frame->length, frame->data,
-                          remote ? 0 : frame->length);
+    struct can_frame can = {0};
+    (void)wire_frame_to_can(frame, &can); /* it is none of those that cannot */
+    return frame_bits_count(tables, &can);
 }
 
 /*
@@ -234,7 +228,7 @@ struct frame_length frame_bits_count_wire(const struct frame_bits *tables,
     if (frame->flags & WIRE_FD)
         return count_fd(tables, frame);
     return (struct frame_length){frame->flags & WIRE_EXTENDED ? count_extended(tables, frame)
-                                                              : count_wire_standard(tables, frame),
+                                                              : count_standard(tables, frame),
                                  0};
 }
 

@@ -308,7 +308,8 @@ bool drive_network_end_cycle(struct drive_network *network)
         good = end_outside(network);
     else
         end_inside(network);
-    tell_warnings(network);
+    if (network->is_outside)
+        tell_warnings(network);
     return good && drive_images_problem(&network->images) == NULL;
 }
 
