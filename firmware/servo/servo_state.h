@@ -109,7 +109,7 @@ struct servo {
     enum cia402_state state;
     uint16_t controlword; /* the one before, for edges */
     uint64_t now_ns;      /* since it was switched on */
-    uint64_t due_ns;      /* nothing of all that waits for a time happens before */
+    uint64_t due_ns;      /* nothing that waits for a time happens before, but for sync_lost_ns */
     uint64_t heard_ns; /* when the frame that is being taken was on the bus; 0: that is not known */
     uint64_t sync_ns;  /* the same of the last SYNC */
     uint32_t clock_us; /* object 1013 less now_ns */

@@ -24,8 +24,7 @@ bool bus_init_rates(struct bus *bus, const struct frame_rates *rates)
 {
     if (!are_good(rates))
         return false;
-    memset(bus, 0,
-           offsetof(struct bus, waiting)); /* what stands there is filled before it is read */
+    memset(bus, 0, offsetof(struct bus, waiting)); /* what follows is filled before it is read */
     bus->times = frame_bits_times(rates);
     bus->fault_from_ns = UINT64_MAX;
     frame_bits_init(&bus->tables);

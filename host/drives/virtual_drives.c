@@ -23,8 +23,7 @@ void virtual_drives_set_default(struct virtual_drives_config *config, unsigned c
 static void start(struct virtual_drives *set, const struct virtual_drives_config *config)
 {
     assert(config->count <= VIRTUAL_DRIVES_MAX);
-    memset(set, 0,
-           offsetof(struct virtual_drives, drive)); /* much memory, and each is switched on */
+    memset(set, 0, offsetof(struct virtual_drives, drive)); /* each is switched on by itself */
     set->count = config->count;
     while (set->motors < set->count && !config->drive[set->motors].is_io)
         set->motors++;
