@@ -166,11 +166,8 @@ static void take_sync(struct servo *drive, const struct can_frame *frame)
     drive->sync_ns = drive->heard_ns;
     if (drive->communication_error == EMCY_SYNC)
         takt_servo_set_communication_error(drive, EMCY_NONE);
-    if (period_ns != 0) {
-        if (drive->sync_lost_ns == DRIVE_NEVER)
-            takt_servo_look_soon(drive);
+    if (period_ns != 0)
         drive->sync_lost_ns = drive->now_ns + SYNC_LOST_PERIODS * period_ns;
-    }
     if (drive->nmt != NMT_OPERATIONAL)
         return;
     takt_servo_apply_held(drive);
@@ -251,14 +248,9 @@ static void take_other(struct servo *drive, const struct can_frame *frame)
     }
 }
 
-bool takt_servo_accepts(const struct servo *drive, const struct can_frame *frame)
-{
-    return drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1;
-}
-
 void takt_servo_on_frame(struct servo *drive, const struct can_frame *frame)
 {
-    if (!takt_servo_accepts(drive, frame) || drive->boot_ns != 0)
+    if (!servo_accepts(drive, frame) || drive->boot_ns != 0)
         return;
     if (nmt_is_guard(frame, drive->config.node) && !drive->lss.is_nameless)
         takt_servo_take_guard(drive);
@@ -329,7 +321,6 @@ static void run_timers(struct servo *drive)
     takt_servo_send_waiting_emergencies(drive);
     takt_servo_send_due(drive);
     drive->due_ns = earlier(drive->heartbeat_ns, takt_servo_next_pdo_ns(drive));
-    drive->due_ns = earlier(drive->due_ns, drive->sync_lost_ns);
     drive->due_ns = earlier(drive->due_ns, drive->guard_lost_ns);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         drive->due_ns = earlier(drive->due_ns, drive->consumer_ns[i]);
@@ -364,7 +355,7 @@ void takt_servo_step(struct servo *drive, uint32_t cycle_ns)
     drive->now_ns += cycle_ns;
     if (may_have_event(drive))
         takt_servo_note_events(drive);
-    if (drive->now_ns >= drive->due_ns)
+    if (drive->now_ns >= earlier(drive->due_ns, drive->sync_lost_ns))
         run_timers(drive);
     if (drive->sdo.state == SDO_SERVER_SENDING)
         takt_sdo_server_go_on(&drive->sdo);

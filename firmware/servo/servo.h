@@ -105,7 +105,10 @@ void takt_servo_tell(const struct servo *drive, enum drive_event_kind kind, uint
 void takt_servo_boot(struct servo *drive);
 
 /* The drive listens to frames of this identifier: what a filter of the bus may let through. */
-bool takt_servo_accepts(const struct servo *drive, const struct can_frame *frame);
+static inline bool servo_accepts(const struct servo *drive, const struct can_frame *frame)
+{
+    return drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1;
+}
 
 /* A frame has come; the drive may send answers. */
 void takt_servo_on_frame(struct servo *drive, const struct can_frame *frame);

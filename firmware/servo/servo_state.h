@@ -6,25 +6,24 @@
 
 #define SERVO_EMCY_QUEUE 8
 
-/* A PDO as it is worked with; made from the objects whenever they change. */
+/* A PDO as it is worked with; made from the objects whenever they change. What every cycle looks at comes first. */
 struct drive_pdo {
     bool is_valid;
     uint16_t cob_id;
     uint8_t transmission;
     uint8_t count, length;
-    uint8_t touches;                                    /* RPDO: enum of servo_private.h */
-    uint8_t groups;                                     /* TPDO: what must be computed first */
-    uint8_t events;                                     /* TPDO: whose change sends it */
-    const struct object_row *row[DRIVE_PDO_MAPPED_MAX]; /* NULL: a dummy */
-    void *field[DRIVE_PDO_MAPPED_MAX];                  /* its value, where there is one */
-    uint8_t bytes[DRIVE_PDO_MAPPED_MAX];
-
+    uint8_t touches;      /* RPDO: enum of servo_private.h */
+    uint8_t groups;       /* TPDO: what must be computed first */
+    uint8_t events;       /* TPDO: whose change sends it */
     bool is_held;         /* RPDO: held waits for SYNC */
     bool is_due;          /* TPDO: an event has happened */
     bool waits_for_start; /* TPDO: until SYNC's counter has its start value */
     uint8_t syncs;        /* TPDO: since it was sent */
     uint64_t event_ns;    /* TPDO: when its event timer runs out */
     uint64_t inhibit_ns;  /* TPDO: not sent before */
+    uint8_t bytes[DRIVE_PDO_MAPPED_MAX];
+    void *field[DRIVE_PDO_MAPPED_MAX];                  /* its value, where there is one */
+    const struct object_row *row[DRIVE_PDO_MAPPED_MAX]; /* NULL: a dummy */
     struct can_frame held;
 };
 
@@ -110,7 +109,7 @@ struct servo {
     enum cia402_state state;
     uint16_t controlword; /* the one before, for edges */
     uint64_t now_ns;      /* since it was switched on */
-    uint64_t due_ns;      /* nothing of all that waits for a time happens before */
+    uint64_t due_ns;      /* nothing that waits for a time happens before, but for sync_lost_ns */
     uint64_t heard_ns; /* when the frame that is being taken was on the bus; 0: that is not known */
     uint64_t sync_ns;  /* the same of the last SYNC */
     uint32_t clock_us; /* object 1013 less now_ns */

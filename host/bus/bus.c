@@ -3,6 +3,7 @@
 #include "bus/bus_private.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
 static_assert((BUS_RECEIVE_MAX & (BUS_RECEIVE_MAX - 1)) == 0, "receive indices are masked");
@@ -23,7 +24,7 @@ bool bus_init_rates(struct bus *bus, const struct frame_rates *rates)
 {
     if (!are_good(rates))
         return false;
-    memset(bus, 0, sizeof *bus);
+    memset(bus, 0, offsetof(struct bus, waiting)); /* what follows is filled before it is read */
     bus->times = frame_bits_times(rates);
     bus->fault_from_ns = UINT64_MAX;
     frame_bits_init(&bus->tables);
@@ -34,13 +35,15 @@ bool bus_init_rates(struct bus *bus, const struct frame_rates *rates)
  * Keeps bus->waiting in falling order. New frames mostly have high identifiers or few rivals, so
  * this is short.
  */
-void bus_insert_waiting(struct bus *bus, const struct bus_waiting *waiting)
+struct bus_waiting *bus_make_room(struct bus *bus, uint64_t order, unsigned port)
 {
-    unsigned at = bus->waiting_count++;
-    for (; at > 0 && bus->waiting[at - 1].order < waiting->order; at--)
-        bus->waiting[at] = bus->waiting[at - 1];
-    bus->waiting[at] = *waiting;
-    bus->port[waiting->port].waiting++;
+    struct bus_waiting *at = &bus->waiting[bus->waiting_count++];
+    for (; at > bus->waiting && at[-1].order < order; at--)
+        at[0] = at[-1];
+    at->order = order;
+    at->port = (uint16_t)port;
+    bus->port[port].waiting++;
+    return at;
 }
 
 /* There is not every length of CAN FD. */
@@ -51,23 +54,29 @@ static void fill_up(struct can_frame *frame)
         frame->data[frame->length] = 0;
 }
 
+static bool has_room(const struct bus_port *port)
+{
+    return port->waiting < BUS_TRANSMIT_MAX && port->bus->waiting_count < BUS_WAITING_MAX;
+}
+
 static bool port_send(void *context, const struct can_frame *frame)
 {
     struct bus_port *port = context;
     struct bus *bus = port->bus;
-    struct bus_waiting waiting = {.order = (uint64_t)can_rank(frame->id) << 48 | bus->sent,
-                                  .since_ns = bus->now_ns,
-                                  .port = (uint16_t)(port - bus->port),
-                                  .frame = *frame};
-    if (port->waiting >= BUS_TRANSMIT_MAX || bus->waiting_count >= BUS_WAITING_MAX ||
-        (bus_is_faulty(bus, bus->now_ns) && !bus_admit(bus, &waiting))) {
+    unsigned index = (unsigned)(port - bus->port);
+    uint64_t since_ns = bus->now_ns;
+    if (!has_room(port) ||
+        (bus_is_faulty(bus, bus->now_ns) && !bus_admit(bus, index, frame->id, &since_ns))) {
         bus->counts.refused++;
         return false;
     }
+    uint64_t order = (uint64_t)can_rank(frame->id) << 48 | bus->sent++;
+    struct bus_waiting *waiting = bus_make_room(bus, order, index);
+    waiting->since_ns = since_ns;
+    waiting->is_repeat = false;
+    waiting->frame = *frame;
     if (bus_is_fd(bus) && !can_is_remote(frame))
-        fill_up(&waiting.frame);
-    bus->sent++;
-    bus_insert_waiting(bus, &waiting);
+        fill_up(&waiting->frame);
     return true;
 }
 
@@ -80,13 +89,27 @@ static bool port_receive(void *context, struct can_frame *frame)
     return true;
 }
 
+/* What a port without a listener does with a frame. */
+static void collect(void *context, const struct can_frame *frame, uint64_t time_ns)
+{
+    struct bus_port *port = context;
+    (void)time_ns;
+    if (port->read == port->written) /* the same memory again, as long as it is near */
+        port->read = port->written = 0;
+    if (port->written - port->read == BUS_RECEIVE_MAX)
+        port->bus->counts.receive_lost++;
+    else
+        port->received[port->written++ & (BUS_RECEIVE_MAX - 1)] = *frame;
+}
+
 struct can_port bus_attach(struct bus *bus, const struct bus_listener *listener)
 {
     assert(bus->port_count < BUS_PORT_MAX);
     struct bus_port *port = &bus->port[bus->port_count++];
+    memset(port, 0, offsetof(struct bus_port, received));
     port->bus = bus;
-    if (listener)
-        port->listener = *listener;
+    port->listener =
+        listener && listener->on_frame ? *listener : (struct bus_listener){collect, port};
     return (struct can_port){.send = port_send, .receive = port_receive, .context = port};
 }
 
@@ -118,23 +141,6 @@ static void begin_frame(struct bus *bus)
     bus_put_on_wire(bus, winner, start_ns, frame_bits_ns(&bus->times, &length));
 }
 
-static void collect(struct bus *bus, struct bus_port *port, const struct can_frame *frame)
-{
-    if (port->written - port->read == BUS_RECEIVE_MAX) {
-        bus->counts.receive_lost++;
-        return;
-    }
-    port->received[port->written++ & (BUS_RECEIVE_MAX - 1)] = *frame;
-}
-
-void bus_deliver(struct bus *bus, struct bus_port *port)
-{
-    if (port->listener.on_frame)
-        port->listener.on_frame(port->listener.context, &bus->wire.frame, bus->now_ns);
-    else
-        collect(bus, port, &bus->wire.frame);
-}
-
 void bus_count_frame(struct bus *bus)
 {
     uint64_t response_ns = bus->now_ns - bus->wire.since_ns;
@@ -151,9 +157,11 @@ static void end_frame(struct bus *bus)
     bus->now_ns = bus->frame_end_ns;
     bus->on_wire = false;
     bus_count_frame(bus);
-    for (unsigned i = 0; i < bus->port_count; i++)
-        if (i != bus->wire.port)
-            bus_deliver(bus, &bus->port[i]);
+    const struct bus_port *sender = &bus->port[bus->wire.port];
+    const struct bus_port *end = &bus->port[bus->port_count];
+    for (const struct bus_port *port = bus->port; port < end; port++)
+        if (port != sender)
+            bus_deliver(bus, port);
 }
 
 static void run_clear(struct bus *bus, uint64_t time_ns)

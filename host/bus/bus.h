@@ -72,7 +72,7 @@ enum bus_confinement { BUS_ACTIVE, BUS_PASSIVE, BUS_OFF };
 
 struct bus_port {
     struct bus *bus;
-    struct bus_listener listener; /* without on_frame: received is filled */
+    struct bus_listener listener; /* the caller's, or what fills received */
     unsigned waiting;             /* frames in bus->waiting */
     unsigned transmit_errors;     /* error counters of its controller */
     unsigned receive_errors;
@@ -109,12 +109,6 @@ struct bus {
     struct bus_waiting wire;
     struct bus_verdict verdict; /* on it */
 
-    unsigned waiting_count;
-    /* In falling order: the winner is the last. One more: the frame on the wire may come back. */
-    struct bus_waiting waiting[BUS_WAITING_MAX + 1];
-
-    unsigned port_count;
-    struct bus_port port[BUS_PORT_MAX];
     struct bus_listener observer;
     struct frame_bits tables;
 
@@ -124,6 +118,11 @@ struct bus {
     bool is_unwell;           /* faults have left something behind: error counters, late frames */
     bool has_ended_responses; /* no more count */
     uint32_t response_max_ns[BUS_ID_COUNT];
+
+    unsigned waiting_count, port_count;
+    /* In falling order: the winner is the last. One more: the frame on the wire may come back. */
+    struct bus_waiting waiting[BUS_WAITING_MAX + 1];
+    struct bus_port port[BUS_PORT_MAX];
 };
 
 /*

@@ -136,15 +136,16 @@ static bool is_connected(const struct bus *bus, unsigned port, uint64_t at_ns)
     return connected_from_ns(bus, port, at_ns) == at_ns;
 }
 
-bool bus_admit(struct bus *bus, struct bus_waiting *waiting)
+bool bus_admit(struct bus *bus, unsigned port, uint16_t id, uint64_t *since_ns)
 {
-    if (bus_get_confinement(bus, waiting->port) == BUS_OFF)
+    const struct bus_waiting frame = {.port = (uint16_t)port, .frame = {.id = id}};
+    if (bus_get_confinement(bus, port) == BUS_OFF)
         return false;
     for (unsigned i = 0; i < bus->fault_count; i++) {
         struct bus_fault_state *state = &bus->fault[i];
-        if (state->fault.kind != BUS_FAULT_DELAY || !strikes(state, waiting, bus->now_ns))
+        if (state->fault.kind != BUS_FAULT_DELAY || !strikes(state, &frame, bus->now_ns))
             continue;
-        waiting->since_ns += state->fault.delay_ns;
+        *since_ns += state->fault.delay_ns;
         bus->counts.delayed++;
         bus->is_unwell = true;
     }
@@ -317,7 +318,7 @@ static void send_again(struct bus *bus, unsigned errors)
         return;
     }
     bus->wire.is_repeat = true;
-    bus_insert_waiting(bus, &bus->wire);
+    *bus_make_room(bus, bus->wire.order, port) = bus->wire;
     suspend_if_passive(bus, port);
 }
 

@@ -7,8 +7,8 @@
 
 #include "bus/bus.h"
 
-/* Puts a frame among the waiting ones, in its place. */
-void bus_insert_waiting(struct bus *bus, const struct bus_waiting *waiting);
+/* The place of a frame of this rank among the waiting ones; the rest of it is the caller's. */
+struct bus_waiting *bus_make_room(struct bus *bus, uint64_t order, unsigned port);
 
 /*
  * Takes the waiting frame at this index onto the wire, which it holds from start_ns on for so long.
@@ -19,7 +19,10 @@ void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, uint64_
 void bus_count_frame(struct bus *bus);
 
 /* Gives the frame on the wire to a port. */
-void bus_deliver(struct bus *bus, struct bus_port *port);
+static inline void bus_deliver(const struct bus *bus, const struct bus_port *port)
+{
+    port->listener.on_frame(port->listener.context, &bus->wire.frame, bus->now_ns);
+}
 
 /* The bus until time_ns with everything that can go wrong. */
 void bus_run_faulty(struct bus *bus, uint64_t time_ns);
@@ -30,7 +33,7 @@ static inline bool bus_is_faulty(const struct bus *bus, uint64_t time_ns)
     return bus->is_unwell || time_ns >= bus->fault_from_ns;
 }
 
-/* A frame is being sent: false if its port is off the bus; a delay moves waiting->since_ns. */
-bool bus_admit(struct bus *bus, struct bus_waiting *waiting);
+/* A frame is being sent: false if its port is off the bus; a delay moves *since_ns. */
+bool bus_admit(struct bus *bus, unsigned port, uint16_t id, uint64_t *since_ns);
 
 #endif

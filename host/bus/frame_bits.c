@@ -18,13 +18,13 @@
 /* x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1, aligned to the upper 15 bits of 16. */
 #define POLYNOMIAL (0x4599u << 1)
 
-#define HEADER_PAD         0xA80000u     /* 10101, then 19 zeros */
-#define UNSTUFFED          44u           /* start to end without data: 34 + 10 */
-#define EXTENDED_PAD       0x8000000000u /* 1, then 39 zeros */
-#define UNSTUFFED_EXTENDED 64u           /* 54 + 10 */
-#define HEADER_BITS        19u
-#define RUN_TO_STUFF       5
-#define STUFFED_STEP       16u /* one stuffed bit in an entry of the table */
+#define HEADER_BYTES          3
+#define HEADER_PAD            0xA80000u /* 10101, then 19 zeros */
+#define UNSTUFFED             44u       /* start to end without data: 34 + 10 */
+#define EXTENDED_HEADER_BYTES 5
+#define EXTENDED_PAD          0x8000000000u /* 1, then 39 zeros */
+#define UNSTUFFED_EXTENDED    64u           /* 54 + 10 */
+#define RUN_TO_STUFF          5
 
 static uint16_t checksum_of_byte(unsigned byte)
 {
@@ -53,75 +53,84 @@ static uint8_t stuffing_of_bits(unsigned state, unsigned bits_of, unsigned bits)
             value = !value;
         }
     }
-    return (uint8_t)(stuffed * STUFFED_STEP + state_of(run, value));
+    return (uint8_t)(stuffed << 4 | state_of(run, value));
+}
+
+/* The remainder of what has one byte more behind it. */
+static uint16_t push_on(const struct frame_bits *tables, unsigned remainder)
+{
+    return (uint16_t)(tables->checksum[0][remainder >> 8] ^ (remainder << 8 & 0xFFFF));
 }
 
 void frame_bits_init(struct frame_bits *tables)
 {
     for (unsigned byte = 0; byte < 256; byte++) {
-        tables->checksum[byte] = checksum_of_byte(byte);
-        for (unsigned state = 0; state < FRAME_BITS_STATES; state++)
-            tables->stuffing[state][byte] = stuffing_of_bits(state, byte, 8);
+        tables->checksum[0][byte] = checksum_of_byte(byte);
+        for (unsigned state = state_of(1, 0); state < state_of(RUN_TO_STUFF, 0); state++)
+            tables->stuffing[byte][state] = stuffing_of_bits(state, byte, 8);
     }
-}
-
-static unsigned add_checksum(const struct frame_bits *tables, unsigned checksum, unsigned byte)
-{
-    return tables->checksum[(checksum >> 8 ^ byte) & 0xFF] ^ (checksum << 8 & 0xFFFF);
-}
-
-/*
- * entry: what the table said of the bytes before; the counts of stuffed bits add up above the
- * state.
- */
-static unsigned add_stuffing(const struct frame_bits *tables, unsigned entry, unsigned byte)
-{
-    return (entry & ~15u) + tables->stuffing[entry & 15u][byte & 0xFF];
+    for (unsigned behind = 1; behind < FRAME_BITS_SUMMED; behind++)
+        for (unsigned byte = 0; byte < 256; byte++)
+            tables->checksum[behind][byte] = push_on(tables, tables->checksum[behind - 1][byte]);
 }
 
 /* A stream of which the checksum and stuffing are known so far. */
 struct stream_bits {
     const struct frame_bits *tables;
-    unsigned checksum, entry;
+    unsigned checksum, state, stuffed;
 };
 
-/* The low 8 count bits of value; what stands above them is of no matter. */
-static void add_bytes(struct stream_bits *stream, uint64_t summed, uint64_t stuffed, unsigned count)
+static struct stream_bits begin_stream(const struct frame_bits *tables, unsigned state)
 {
-    for (unsigned shift = 8 * count; shift > 0; shift -= 8) {
-        stream->checksum = add_checksum(stream->tables, stream->checksum,
-                                        (unsigned)(summed >> (shift - 8)) & 0xFF);
-        stream->entry =
-            add_stuffing(stream->tables, stream->entry, (unsigned)(stuffed >> (shift - 8)) & 0xFF);
+    return (struct stream_bits){.tables = tables, .state = state};
+}
+
+static void take_stuffing(struct stream_bits *stream, unsigned entry)
+{
+    stream->state = entry & 15u;
+    stream->stuffed += entry >> 4;
+}
+
+static void add_stuffing(struct stream_bits *stream, unsigned byte)
+{
+    take_stuffing(stream, stream->tables->stuffing[byte][stream->state]);
+}
+
+/* The low bytes of header, of which pad is no part, before so much data; the pad is in the first. */
+static void add_header(struct stream_bits *stream, uint64_t header, uint64_t pad, unsigned bytes,
+                       unsigned length)
+{
+    const uint16_t(*behind)[256] = &stream->tables->checksum[length];
+    for (unsigned i = bytes; i-- > 0;) {
+        stream->checksum ^= behind[i][header >> 8 * i & 0xFF];
+        add_stuffing(stream, (unsigned)((header | pad) >> 8 * i) & 0xFF);
     }
 }
 
 static void add_data(struct stream_bits *stream, const uint8_t *data, unsigned length)
 {
+    const uint16_t(*behind)[256] = &stream->tables->checksum[length];
     for (unsigned i = 0; i < length; i++) {
-        stream->checksum = add_checksum(stream->tables, stream->checksum, data[i]);
-        stream->entry = add_stuffing(stream->tables, stream->entry, data[i]);
+        stream->checksum ^= (*--behind)[data[i]];
+        add_stuffing(stream, data[i]);
     }
 }
 
 /* Stuffed bits of the whole frame, its checksum included. */
-static unsigned count_stuffed(const struct stream_bits *stream)
+static unsigned count_stuffed(struct stream_bits *stream)
 {
     unsigned checksum = stream->checksum | (~stream->checksum >> 1 & 1u);
-    unsigned entry = add_stuffing(stream->tables, stream->entry, checksum >> 8);
-    return add_stuffing(stream->tables, entry, checksum) / STUFFED_STEP;
+    add_stuffing(stream, checksum >> 8);
+    add_stuffing(stream, checksum & 0xFF);
+    return stream->stuffed;
 }
 
-static unsigned header_of(const struct can_frame *frame)
-{
-    return can_rank(frame->id) << 6 | frame->length;
-}
-
+/* Start 0, identifier 11, RTR, IDE 0, r0 0, length 4: 19 bits, five put before them. */
 unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame)
 {
-    struct stream_bits stream = {.tables = tables, .entry = state_of(1, 0)};
-    unsigned header = header_of(frame), length = can_data_length(frame);
-    add_bytes(&stream, header, header | HEADER_PAD, 3);
+    struct stream_bits stream = begin_stream(tables, state_of(1, 0));
+    unsigned header = can_rank(frame->id) << 6 | frame->length, length = can_data_length(frame);
+    add_header(&stream, header, HEADER_PAD, HEADER_BYTES, length);
     add_data(&stream, frame->data, length);
     return UNSTUFFED + 8u * length + count_stuffed(&stream);
 }
@@ -132,26 +141,22 @@ unsigned frame_bits_count(const struct frame_bits *tables, const struct can_fram
  */
 static unsigned count_extended(const struct frame_bits *tables, const struct wire_frame *frame)
 {
-    struct stream_bits stream = {.tables = tables, .entry = state_of(1, 0)};
+    struct stream_bits stream = begin_stream(tables, state_of(1, 0));
     bool remote = frame->flags & WIRE_REMOTE;
     unsigned length = remote ? 0 : frame->length;
     uint64_t header = (uint64_t)(frame->id >> 18) << 27 | 3u << 25 |
                       (uint64_t)(frame->id & 0x3FFFFu) << 7 | (remote ? 1u << 6 : 0) |
                       frame->length;
-    add_bytes(&stream, header, header | EXTENDED_PAD, 5);
+    add_header(&stream, header, EXTENDED_PAD, EXTENDED_HEADER_BYTES, length);
     add_data(&stream, frame->data, length);
     return UNSTUFFED_EXTENDED + 8u * length + count_stuffed(&stream);
 }
 
 static unsigned count_standard(const struct frame_bits *tables, const struct wire_frame *frame)
 {
-    struct stream_bits stream = {.tables = tables, .entry = state_of(1, 0)};
-    bool remote = frame->flags & WIRE_REMOTE;
-    unsigned length = remote ? 0 : frame->length;
-    unsigned header = frame->id << 7 | (remote ? 1u << 6 : 0) | frame->length;
-    add_bytes(&stream, header, header | HEADER_PAD, 3);
-    add_data(&stream, frame->data, length);
-    return UNSTUFFED + 8u * length + count_stuffed(&stream);
+    struct can_frame can = {0};
+    (void)wire_frame_to_can(frame, &can); /* it is none of those that cannot */
+    return frame_bits_count(tables, &can);
 }
 
 /*
@@ -186,31 +191,31 @@ static unsigned fd_control(const struct wire_frame *frame)
     return (frame->flags & WIRE_PASSIVE ? 1u << 4 : 0) | wire_frame_fd_code(frame->length);
 }
 
-/* The low bits of value, one by one, behind an entry of the table. */
-static unsigned add_single_bits(unsigned entry, uint64_t value, unsigned bits)
+/* The low bits of value, one by one. */
+static void add_single_bits(struct stream_bits *stream, uint64_t value, unsigned bits)
 {
     while (bits-- > 0)
-        entry = (entry & ~15u) + stuffing_of_bits(entry & 15u, (unsigned)(value >> bits) & 1, 1);
-    return entry;
+        take_stuffing(stream, stuffing_of_bits(stream->state, (unsigned)(value >> bits) & 1, 1));
 }
 
 /* A stuffed bit at the very end is not sent, since a fixed one follows. It would be opposite to the last. */
-static bool is_stuffed_last(unsigned entry, unsigned last)
+static bool is_stuffed_last(const struct stream_bits *stream, unsigned last)
 {
-    return (entry & 1u) != (last & 1u);
+    return (stream->state & 1u) != (last & 1u);
 }
 
 static struct frame_length count_fd(const struct frame_bits *tables, const struct wire_frame *frame)
 {
     const unsigned header = frame->flags & WIRE_EXTENDED ? FD_HEADER_EXTENDED : FD_HEADER;
     const unsigned length = wire_frame_fd_length(frame->length), control = fd_control(frame);
-    unsigned entry = add_single_bits(state_of(1, 1), fd_header(frame), header);
-    const unsigned early = entry / STUFFED_STEP;
-    entry = add_single_bits(entry, control, FD_CONTROL);
+    struct stream_bits stream = begin_stream(tables, state_of(1, 1));
+    add_single_bits(&stream, fd_header(frame), header);
+    const unsigned early = stream.stuffed;
+    add_single_bits(&stream, control, FD_CONTROL);
     for (unsigned i = 0; i < length; i++)
-        entry = add_stuffing(tables, entry, frame->data[i]);
+        add_stuffing(&stream, frame->data[i]);
     const unsigned last = length > 0 ? frame->data[length - 1] : control;
-    const unsigned late = entry / STUFFED_STEP - early - is_stuffed_last(entry, last);
+    const unsigned late = stream.stuffed - early - is_stuffed_last(&stream, last);
     const struct frame_length bits = {header + early + FD_END,
                                       FD_CONTROL + 8u * length + late + crc_field(length) + 1u};
     return frame->flags & WIRE_RATE_SWITCH ? bits
@@ -227,12 +232,10 @@ struct frame_length frame_bits_count_wire(const struct frame_bits *tables,
                                  0};
 }
 
-struct frame_length frame_bits_count_port(const struct frame_bits *tables,
-                                          const struct can_frame *frame, bool fd)
+struct frame_length frame_bits_count_fd(const struct frame_bits *tables,
+                                        const struct can_frame *frame)
 {
     struct wire_frame wire;
-    if (!fd || can_is_remote(frame))
-        return (struct frame_length){frame_bits_count(tables, frame), 0};
     wire_frame_from_can(&wire, frame, true);
     return count_fd(tables, &wire);
 }

@@ -19,16 +19,18 @@
 /*
  * Tables that take a byte at a time.
  *
- * state: bits 3 ... 1 the number of equal bits at the end of the stream (1 ... 4), bit 0 their
- * value. stuffing [state][byte] is the state after the byte in its bits 3 ... 0 and the number of
- * bits stuffed (0 ... 2) above them. checksum[byte] is the CRC-15 remainder of the byte, in the
- * upper 15 bits of 16.
+ * checksum[behind][byte] is what a byte with so many bytes behind it adds to the CRC-15 remainder, in the upper 15 bits of
+ * 16: the remainder of several bytes is the sum (exclusive or) of what each adds.
+ *
+ * state: bits 3 ... 1 the number of equal bits at the end of the stream (1 ... 4), bit 0 their value. stuffing[byte][state]
+ * is the state after the byte in its lower four bits and the number of bits stuffed (0 ... 2) above them.
  */
-#define FRAME_BITS_STATES 10
+#define FRAME_BITS_STATES 16 /* those of runs of 1 ... 4 are used */
+#define FRAME_BITS_SUMMED 13 /* header with a 29-bit identifier, and data of a classical frame */
 
 struct frame_bits {
-    uint16_t checksum[256];
-    uint8_t stuffing[FRAME_BITS_STATES][256];
+    uint16_t checksum[FRAME_BITS_SUMMED][256];
+    uint8_t stuffing[256][FRAME_BITS_STATES];
 };
 
 void frame_bits_init(struct frame_bits *tables);
@@ -56,9 +58,17 @@ struct frame_rates {
 /* Length of a frame of any kind, exactly; without intermission. */
 struct frame_length frame_bits_count_wire(const struct frame_bits *tables,
                                           const struct wire_frame *frame);
+/* Of a data frame as CAN FD has it. */
+struct frame_length frame_bits_count_fd(const struct frame_bits *tables,
+                                        const struct can_frame *frame);
 /* Length of a frame of a port; fd: one that speaks CAN FD. */
-struct frame_length frame_bits_count_port(const struct frame_bits *tables,
-                                          const struct can_frame *frame, bool fd);
+static inline struct frame_length frame_bits_count_port(const struct frame_bits *tables,
+                                                        const struct can_frame *frame, bool fd)
+{
+    if (fd && !can_is_remote(frame))
+        return frame_bits_count_fd(tables, frame);
+    return (struct frame_length){frame_bits_count(tables, frame), 0};
+}
 
 /* With worst-case stuffing and intermission, of a data frame with an 11-bit identifier; README.md has the formulas. */
 struct frame_length frame_bits_worst(unsigned length, bool fd);

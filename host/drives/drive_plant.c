@@ -305,7 +305,7 @@ static void latch_edges(struct drive_plant *plant, uint32_t inputs)
 {
     double table_mm = drive_plant_table_mm(plant);
     uint32_t changed = inputs ^ plant->sense.inputs;
-    for (unsigned i = 0; i < MOTOR_INPUTS; i++) {
+    for (unsigned i = 0; changed >> i != 0; i++) {
         uint32_t input = 1U << i;
         if (!(changed & input))
             continue;

@@ -78,17 +78,9 @@ void virtual_drive_boot(struct virtual_drive *drive)
     virtual_drive_end(drive);
 }
 
-/* What the drive does not listen to its twin need not be told. */
-static bool is_heard(const struct virtual_drive *drive, const struct can_frame *frame)
+static void take_with_twin(struct virtual_drive *drive, const struct can_frame *frame,
+                           uint64_t time_ns)
 {
-    return !drive->faults.is_hung && takt_servo_accepts(&drive->servo, frame);
-}
-
-void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
-                               uint64_t time_ns)
-{
-    if (!is_heard(drive, frame))
-        return;
     struct twin_order order = {.kind = TWIN_FRAME, .time_ns = time_ns};
     classical_frame_set(&order.frame, frame);
     virtual_drive_begin(drive, &order);
@@ -96,18 +88,38 @@ void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_fra
     virtual_drive_end(drive);
 }
 
+/* What the drive does not listen to its twin need not be told. */
+void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
+                               uint64_t time_ns)
+{
+    if (!servo_accepts(&drive->servo, frame) || drive->faults.is_hung)
+        return;
+    if (drive->twin != NULL)
+        take_with_twin(drive, frame, time_ns);
+    else
+        takt_servo_on_frame_at(&drive->servo, frame, time_ns);
+}
+
 void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)
 {
     virtual_drive_on_frame_at(drive, frame, 0);
+}
+
+static void step_with_twin(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_STEP, .a = cycle_ns});
+    takt_servo_step(&drive->servo, cycle_ns);
+    virtual_drive_end(drive);
 }
 
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     if (drive->faults.script)
         virtual_drive_run_faults(drive);
-    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_STEP, .a = cycle_ns});
-    takt_servo_step(&drive->servo, cycle_ns);
-    virtual_drive_end(drive);
+    if (drive->twin != NULL)
+        step_with_twin(drive, cycle_ns);
+    else
+        takt_servo_step(&drive->servo, cycle_ns);
 }
 
 void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio)

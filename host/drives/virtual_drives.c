@@ -2,6 +2,7 @@
 #include "canopen/target_pdo.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
 /* Longer is no cycle: such drives keep their own time. */
@@ -22,7 +23,7 @@ void virtual_drives_set_default(struct virtual_drives_config *config, unsigned c
 static void start(struct virtual_drives *set, const struct virtual_drives_config *config)
 {
     assert(config->count <= VIRTUAL_DRIVES_MAX);
-    memset(set, 0, sizeof *set);
+    memset(set, 0, offsetof(struct virtual_drives, drive)); /* each is switched on by itself */
     set->count = config->count;
     while (set->motors < set->count && !config->drive[set->motors].is_io)
         set->motors++;
@@ -31,7 +32,9 @@ static void start(struct virtual_drives *set, const struct virtual_drives_config
 
 static void on_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
 {
-    virtual_drive_on_frame_at(context, frame, time_ns);
+    const struct virtual_drive *drive = context;
+    if (servo_accepts(&drive->servo, frame)) /* most are for others */
+        virtual_drive_on_frame_at(context, frame, time_ns);
 }
 
 /* RPDO2 of a motor, by the motors of its bus. */

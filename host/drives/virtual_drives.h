@@ -43,7 +43,6 @@ struct virtual_drives {
     struct inject_clock clock;
     struct virtual_drives_contact contact; /* without touches: nothing */
     bool touches;
-    struct virtual_drive drive[VIRTUAL_DRIVES_MAX];
 
     /* Not on the embedded bus: the drives hear each other, too. */
     struct can_port port;
@@ -57,6 +56,8 @@ struct virtual_drives {
         unsigned sender;
         struct can_frame frame;
     } own[VIRTUAL_DRIVES_OWN_FRAMES_MAX];
+
+    struct virtual_drive drive[VIRTUAL_DRIVES_MAX];
 };
 
 /*

@@ -2,8 +2,6 @@
 #include "siemens/scan.h"
 #include "siemens/siemens.h"
 
-#include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
 static bool begins_so(const char *text)
@@ -13,20 +11,27 @@ static bool begins_so(const char *text)
         "DEF CHAR ", "DEF STRING", "DEF AXIS ", "DEF FRAME ", "EXTERN ",   "CASE(",    "CYCLE8"};
 
     for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++) {
-        if (strncmp(text, orders[i], strlen(orders[i])) == 0)
+        if (text[0] == orders[i][0] && strncmp(text, orders[i], strlen(orders[i])) == 0)
             return true;
     }
     return false;
 }
 
+/* Up to a comment. */
+static void copy_capitals(char *to, size_t size, const char *from)
+{
+    size_t i = 0;
+
+    for (; i + 1 < size && from[i] != '\0' && from[i] != ';'; i++)
+        to[i] = (char)(from[i] >= 'a' && from[i] <= 'z' ? from[i] - 'a' + 'A' : from[i]);
+    to[i] = '\0';
+}
+
 bool siemens_tells(const struct line *l)
 {
-    const size_t length = strcspn(l->text, ";");
     char text[256];
 
-    (void)snprintf(text, sizeof text, "%.*s", length < 255 ? (int)length : 255, l->text);
-    for (char *c = text; *c != '\0'; c++)
-        *c = (char)toupper((unsigned char)*c);
+    copy_capitals(text, sizeof text, l->text);
     const char *at = text;
 
     if (*at == 'N' && scan_is_digit(at[1]))

@@ -168,7 +168,6 @@ enum command_status drive_network_open(struct drive_network *network,
 {
     enum command_status status = STATUS_DONE;
 
-    memset(network, 0, sizeof *network);
     network->buses = takt_machine_bus_count(&setup->machine);
     network->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
     network->script = options->script;
@@ -309,7 +308,8 @@ bool drive_network_end_cycle(struct drive_network *network)
         good = end_outside(network);
     else
         end_inside(network);
-    tell_warnings(network);
+    if (network->is_outside)
+        tell_warnings(network);
     return good && drive_images_problem(&network->images) == NULL;
 }
 

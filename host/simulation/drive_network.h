@@ -84,7 +84,7 @@ bool drive_network_next_address(const char **list, char address[DRIVE_NETWORK_AD
 /* Buses and drives are not in this process. */
 bool drive_network_is_outside(const struct drive_network_options *options);
 
-/* The drives boot, or are there. STATUS_DONE; else after a message, and nothing is open. */
+/* The drives boot, or are there. network: zeros. STATUS_DONE; else after a message, and nothing is open. */
 enum command_status drive_network_open(struct drive_network *network,
                                        const struct machine_setup *setup,
                                        const struct drive_network_options *options);

@@ -200,6 +200,22 @@ static void step(struct virtual_spindle *s, double dt_s, double commanded_rpm, d
     watch_overload(s, dt_s);
 }
 
+static void run(struct virtual_spindle *s, double dt_s, double commanded_rpm, double load_nm)
+{
+    const unsigned steps = (unsigned)maths_max(1.0, takt_maths_ceil(dt_s / STEP_MAX_S));
+    const double part_s = dt_s / (double)steps;
+
+    for (unsigned i = 0; i < steps; i++)
+        step(s, part_s, commanded_rpm, load_nm);
+}
+
+/* Nothing turns it, and nothing is to. */
+static bool rests(const struct virtual_spindle *s, double commanded_rpm)
+{
+    return commanded_rpm == 0.0 && s->speed_rad_s == 0.0 && s->ramp_rpm == 0.0 &&
+           s->torque_nm == 0.0 && s->integral_nm == 0.0 && s->overload_s == 0.0;
+}
+
 static bool is_at_speed(const struct virtual_spindle *s, double commanded_rpm)
 {
     const double speed_rpm = s->speed_rad_s / RAD_S_PER_RPM;
@@ -228,11 +244,8 @@ static double measured_angle_rev(struct virtual_spindle *s)
 struct spindle_feedback virtual_spindle_step(struct virtual_spindle *s, double dt_s,
                                              double commanded_rpm, double load_nm)
 {
-    const unsigned steps = (unsigned)maths_max(1.0, takt_maths_ceil(dt_s / STEP_MAX_S));
-    const double part_s = dt_s / (double)steps;
-
-    for (unsigned i = 0; i < steps; i++)
-        step(s, part_s, commanded_rpm, load_nm);
+    if (!rests(s, commanded_rpm))
+        run(s, dt_s, commanded_rpm, load_nm);
     return (struct spindle_feedback){
         .angle_rev = measured_angle_rev(s),
         .speed_rpm = s->speed_rad_s / RAD_S_PER_RPM,

@@ -14,11 +14,6 @@
 /* At first; it grows. */
 #define CAPACITY 64
 
-struct tube_piece *tube_path_at(const struct tube_path *p, size_t k)
-{
-    return &p->piece[(p->first + k) & (p->capacity - 1)];
-}
-
 static bool grow(struct tube_path *p)
 {
     const size_t capacity = p->capacity != 0 ? 2 * p->capacity : CAPACITY;

@@ -72,7 +72,10 @@ void tube_path_init(struct tube_path *p, const struct program_config *program,
                     const struct source *source, double exact_mm);
 void tube_path_free(struct tube_path *p);
 /* For the pieces in memory; valid until the next one is appended. */
-struct tube_piece *tube_path_at(const struct tube_path *p, size_t k);
+static inline struct tube_piece *tube_path_at(const struct tube_path *p, size_t k)
+{
+    return &p->piece[(p->first + k) & (p->capacity - 1)];
+}
 /* Appends the next piece. False: there is none before an answer, or at all, or no memory (failed). */
 bool tube_path_extend(struct tube_path *p);
 void tube_path_drop(struct tube_path *p);

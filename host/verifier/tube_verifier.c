@@ -366,10 +366,13 @@ static double bend_of(const struct point *a, const struct point *b, const struct
     return maths_sqrt(square);
 }
 
-/* From the last setpoint to the next one, behind which the axes go on to another. */
-static struct stride step_to(const struct tube_verifier *t, const struct point *then)
+/* From the last setpoint to the next one, at the ends of which the way bends by so much. */
+static struct stride step_to(const struct tube_verifier *t, double bend_mm)
 {
-    struct stride step = {.segment = {.start = t->last}, .to = t->next, .motion = t->next_motion};
+    struct stride step = {.segment = {.start = t->last},
+                          .to = t->next,
+                          .motion = t->next_motion,
+                          .sag_mm = bend_mm / 8};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double way = t->next.at[i] - t->last.at[i];
@@ -378,14 +381,14 @@ static struct stride step_to(const struct tube_verifier *t, const struct point *
         step.segment.square_mm2 += way * way;
     }
     step.segment.length_mm = maths_sqrt(step.segment.square_mm2);
-    step.sag_mm =
-        maths_max(bend_of(&t->before, &t->last, &t->next), bend_of(&t->last, &t->next, then)) / 8;
     return step;
 }
 
+/* Behind the next setpoint the axes go on to another. */
 static void verify_next(struct tube_verifier *t, const struct point *then)
 {
-    const struct stride step = step_to(t, then);
+    const double bend_mm = bend_of(&t->last, &t->next, then);
+    const struct stride step = step_to(t, maths_max(t->bend_mm, bend_mm));
     struct nearest n = {.of_tolerance = MATHS_INFINITY};
     bool left;
 
@@ -400,12 +403,15 @@ static void verify_next(struct tube_verifier *t, const struct point *then)
     drop_left(t);
     t->before = t->last;
     t->last = step.to;
+    t->bend_mm = bend_mm;
 }
 
 bool tube_verifier_add(struct tube_verifier *t, const struct point *setpoint, uint32_t motion)
 {
     if (t->has_next)
         verify_next(t, setpoint);
+    else
+        t->bend_mm = bend_of(&t->before, &t->last, setpoint);
     t->next = *setpoint;
     t->next_motion = motion;
     t->has_next = true;

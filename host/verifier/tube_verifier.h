@@ -42,6 +42,7 @@ struct tube_verifier {
     struct point next;    /* not verified yet: what comes after it tells how the axes go there */
     uint32_t next_motion;
     bool has_next;
+    double bend_mm; /* of the way at the last setpoint */
     uint64_t looks; /* work: pieces that a setpoint has been compared with */
     struct tube_figures figures;
 };

@@ -4,11 +4,6 @@
 
 #include <string.h>
 
-char line_lower(char c)
-{
-    return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-}
-
 static bool is_letter(char c)
 {
     c = line_lower(c);

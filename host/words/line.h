@@ -110,7 +110,10 @@ size_t line_name_length(const struct line *l, size_t at);
 /* Is the next character from there, but for spaces, '='? */
 bool line_is_assigned(const struct line *l, size_t at);
 
-char line_lower(char c);
+static inline char line_lower(char c)
+{
+    return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+}
 
 /* What O-words go by: <name, or a number without zeros before it. */
 #define LINE_LABEL_MAX 64
