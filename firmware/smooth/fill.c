@@ -5,6 +5,7 @@
 
 #include "base/assert.h"
 #include "smooth/interval.h"
+#include "smooth/nominal.h"
 
 /* How the rate may change: as these axes allow. What others do is nothing to it. */
 static void find_change(const struct smooth *s, unsigned axes, double interval_s,
@@ -20,7 +21,8 @@ static void find_change(const struct smooth *s, unsigned axes, double interval_s
 /* What merging uses of the tolerance makes no interval shorter. */
 static double find_interval(const struct smooth *s, unsigned axes)
 {
-    return takt_interval_of(&s->limits, &s->route, axes, s->merge.move.tolerance_mm, s->finished);
+    return takt_interval_of(&s->limits, &s->route, axes,
+                            (double)s->route.part * s->merge.move.tolerance_mm, s->finished);
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
@@ -37,11 +39,21 @@ static void set_interval(struct smooth *s)
     takt_window_init(&s->window, &s->route, interval_s);
 }
 
+void takt_fill_within(struct smooth *s, float part)
+{
+    TAKT_ASSERT(part > 0.0f && part <= 1.0f);
+    if (s->route.part < part || s->route.part > part) {
+        s->route.part = part;
+        takt_nominal_again(&s->route);
+    }
+    set_interval(s);
+    s->window.count = SMOOTH_FIXED;
+}
+
 void takt_fill_begin_anew(struct smooth *s)
 {
     TAKT_ASSERT(s->open && s->ready == 0);
-    set_interval(s);
-    s->window.count = SMOOTH_FIXED;
+    takt_fill_within(s, 1.0f);
     s->starts = true;
     s->proved = 0;
 }

@@ -170,7 +170,7 @@ static float corner_feed(struct route *r, uint32_t index)
     struct surroundings s = {.left = index - 1, .right = index};
     const float enough =
         single_min(route_element(r, index - 1)->feed_mm_s, route_element(r, index)->feed_mm_s);
-    const float tolerance_mm = (float)r->tolerance_mm;
+    const float tolerance_mm = r->part * (float)r->tolerance_mm;
     float best = 0.0f;
     float d[AXIS_COUNT];
 
@@ -263,4 +263,12 @@ void takt_nominal_update(struct route *r)
         set_corner(r, changed);
     }
     find_binding(r, changed);
+}
+
+void takt_nominal_again(struct route *r)
+{
+    for (uint32_t i = r->first + 1; i < r->count; i++) {
+        set_corner(r, i);
+    }
+    find_binding(r, r->first);
 }

@@ -12,6 +12,8 @@ void takt_nominal_set(struct route_element *e, const struct curve *curve, float 
                       const struct route *r);
 /* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
 void takt_nominal_update(struct route *r);
+/* All corners anew, for another part of the tolerance. */
+void takt_nominal_again(struct route *r);
 
 /* At this feed and acceleration, can all be met that is known to follow? */
 bool takt_nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,

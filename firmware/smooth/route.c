@@ -39,6 +39,7 @@ void takt_route_init(struct route *r, const struct smooth_limits *limits, double
 {
     route_limit(r, limits, tolerance_mm);
     r->moved = 0;
+    r->part = 1.0f;
     r->first = 0;
     r->count = 0;
     r->curved_first = 0;

@@ -79,6 +79,7 @@ struct route {
         chord_mm; /* how far the line through setpoints may leave the curve at a corner (limits.h), */
     float chord_per_second; /* and does for c_0 - 2 c_1 + c_2 */
     unsigned moved;         /* axes that the chain moves, as far as is known, by bit */
+    float part;             /* of the tolerance, within which a curve is looked for */
     double tolerance_mm;
     uint32_t first;                      /* elements forgotten so far */
     uint32_t count;                      /* elements pushed so far */

@@ -18,8 +18,12 @@
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
 
-/* In this part of that a curve is looked for once more that is not worth it: strokes may lie closer together. */
-#define NARROWER 0.25
+/* From rest a curve is also looked for in narrower parts of the tolerance: the least of them, and by how much they differ. */
+#define PART_LEAST 0.25f
+#define PARTS      2.0f
+
+/* Where the chain goes on behind the window, a narrower one must be quicker by this: longer intervals reach farther ahead. */
+#define CLEARLY 0.85f
 
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
@@ -31,9 +35,10 @@
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
                "too much memory");
 
-static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, double part)
+static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
 {
-    takt_relax_window(&scratch->relax, &s->window, &s->route, part * AIM * s->route.tolerance_mm);
+    takt_relax_window(&scratch->relax, &s->window, &s->route,
+                      (double)s->route.part * AIM * s->route.tolerance_mm);
     takt_window_locate(&s->window, &s->route);
 }
 
@@ -121,8 +126,7 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ve
  * them. Where that brings it no nearer the curve would only come there later and later. A corner that was left out is
  * noticed some way behind it: it is slow where all was whole.
  */
-static void slow_down(struct smooth *s, union smooth_scratch *scratch, double part,
-                      struct verifier_verdict *v)
+static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     float before_mm = SINGLE_INFINITY;
 
@@ -135,7 +139,7 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, double pa
         before_mm = v->beyond_mm > 0.0f ? v->beyond_mm : SINGLE_INFINITY;
         takt_timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
         takt_window_extend(&s->window, &s->route);
-        relax_and_locate(s, scratch, part);
+        relax_and_locate(s, scratch);
         verified(s, v);
     }
 }
@@ -216,15 +220,15 @@ static void choose(struct smooth *s, union smooth_scratch *scratch)
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
 static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
-                       double part, struct verifier_verdict *v)
+                       struct verifier_verdict *v)
 {
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s, scratch, part);
+        relax_and_locate(s, scratch);
         takt_timing_again(&scratch->timing, &s->window, &s->route);
         takt_window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s, scratch, part);
-    slow_down(s, scratch, part, v);
+    relax_and_locate(s, scratch);
+    slow_down(s, scratch, v);
     time_last(s, scratch, v);
     s->ends = s->finished && s->window.at_end;
     const unsigned good = v->whole[v->good];
@@ -234,34 +238,79 @@ static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned
 }
 
 /* From nothing but what is kept. */
-static void search_anew(struct smooth *s, union smooth_scratch *scratch, double part,
-                        struct verifier_verdict *v)
+static void search_anew(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     s->window.count = SMOOTH_FIXED;
     s->window.at_end = false;
     takt_window_extend(&s->window, &s->route);
-    search_way(s, scratch, ROUNDS_FIRST, part, v);
+    search_way(s, scratch, ROUNDS_FIRST, v);
+}
+
+/* In motion it begins with what was found before; where no way leads on from that, one is looked for from nothing. */
+static void search_on(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
+{
+    search_way(s, scratch, ROUNDS, v);
+    if (is_stuck(s)) {
+        search_anew(s, scratch, v);
+    }
 }
 
 /*
- * The window for the next pieces; false when more must be known first. In motion it begins with what was found before; where no way
- * leads on from that, one is looked for from nothing.
+ * How long the curve that was found seems to take to the end of what is known, by its time up to until_mm, or to the end of its
+ * pieces if that is sooner: there until_mm is then.
  */
+static float found_time(struct smooth *s, union smooth_scratch *scratch, double *until_mm)
+{
+    struct worth_window now = asked(s, scratch);
+
+    if (is_stuck(s)) {
+        return SINGLE_INFINITY;
+    }
+    while (now.pieces > 1 && s->window.at_mm[now.pieces + 1] > *until_mm) {
+        now.pieces--;
+    }
+    *until_mm = s->window.at_mm[now.pieces + 1];
+    return takt_worth_time(&now);
+}
+
+/* What is found in a part of the tolerance is within all of it, and often the quicker: so the quickest is taken. */
+static void search_from_rest(struct smooth *s, union smooth_scratch *scratch,
+                             struct verifier_verdict *v)
+{
+    double until_mm = MATHS_INFINITY;
+    float least = SINGLE_INFINITY;
+    float best = 1.0f;
+
+    for (float part = PART_LEAST; part <= 1.0f; part *= PARTS) {
+        takt_fill_within(s, part);
+        search_anew(s, scratch, v);
+        const float time = found_time(s, scratch, &until_mm);
+
+        if ((is_end(s, s->ready) ? 1.0f : CLEARLY) * time <= least) {
+            least = time;
+            best = part;
+        }
+    }
+    if (best < 1.0f) {
+        takt_fill_within(s, best);
+        search_anew(s, scratch, v);
+    }
+}
+
+/* The window for the next pieces; false when more must be known first. */
 static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 {
     const bool goes_on = s->proved > 0;
     struct verifier_verdict v;
-    double to_mm;
 
     takt_head_keep(&s->head, &s->window, &s->route, s->proved);
     if (!takt_fill(s)) {
         return false;
     }
-    search_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, 1.0, &v);
-    if (goes_on && is_stuck(s)) {
-        search_anew(s, scratch, 1.0, &v);
-    } else if (!goes_on && prefers_path(s, scratch, &to_mm)) {
-        search_anew(s, scratch, NARROWER, &v);
+    if (goes_on) {
+        search_on(s, scratch, &v);
+    } else {
+        search_from_rest(s, scratch, &v);
     }
     choose(s, scratch);
     if (s->ready > 0) {

@@ -127,59 +127,50 @@ static float path_time(const struct worth_window *now, uint32_t first)
                         (float)(at_mm - start_mm) / length);
 }
 
-/* What all rests ahead cost it, beyond its way at the nominal feed. */
-static float time_of_rests(const struct worth_window *now)
-{
-    uint32_t rest = next_rest(now, now->window->element[0]);
-    float time = 0.0f;
-
-    while (rest < now->route->count) {
-        time += ramp(now, rest - 1, route_element(now->route, rest - 1)->feed_mm_s) +
-                ramp(now, rest, route_element(now->route, rest)->feed_mm_s);
-        rest = next_rest(now, rest);
-    }
-    return time;
-}
-
 /* A curve takes up to so many times what its pieces seem to take: of 1,200 random programs most are within it. */
 #define LONGER 1.04f
 
-/* Is the path quicker on all that is known, if the curve takes as much of its time there as on a stretch of it? */
-static bool is_quicker_on(const struct worth_window *now, float curve, float path)
-{
-    const float all = takt_exact_time(now->route, now->machine, now->window->at_mm[0],
-                                      now->window->element[0], now->route->count);
+/* Up to so many times the path's time on what is known may gain on what is not, where that has no rest yet. */
+#define UNKNOWN 1.05f
 
-    return all < (now->finished ? 2.0f : 1.0f) * now->rest_s + LONGER * curve / path * all;
+static float path_time_of_all(const struct worth_window *now)
+{
+    return takt_exact_time(now->route, now->machine, now->window->at_mm[0], now->window->element[0],
+                           now->route->count);
+}
+
+/* How long a curve takes on all of the path that is known, if it takes so many times as long as that. */
+static float time_of_all(const struct worth_window *now, float times)
+{
+    return (now->finished ? 2.0f : 1.0f) * now->rest_s + times * path_time_of_all(now);
+}
+
+/* What the pieces take, as a part of the path's time to where they end. */
+static float times_path(const struct worth_window *now, struct passed *last)
+{
+    return (go(now, 1.0f, last) - now->rest_s) / path_time(now, now->window->element[0]);
+}
+
+float takt_worth_time(const struct worth_window *now)
+{
+    struct passed last;
+
+    return time_of_all(now, times_path(now, &last));
 }
 
 bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
 {
-    const struct window *w = now->window;
     const struct route *r = now->route;
-    const double at_mm = w->at_mm[0];
+    const double end_mm = takt_route_end(r);
+    const bool whole = now->finished && now->window->at_mm[now->pieces + 1] == end_mm;
     struct passed last;
-    const float time = go(now, 1.0f, &last);
+    const float times = times_path(now, &last);
 
-    *to_mm = takt_route_end(r);
-    if (now->finished) {
-        const double end_mm = w->at_mm[now->pieces + 1];
-        const bool quicker =
-            takt_exact_time(r, now->machine, at_mm, w->element[0], r->count) <
-            time + now->rest_s + takt_route_time(r, w->element[now->pieces + 1], end_mm, *to_mm);
-
-        if (quicker || end_mm == *to_mm) {
-            return quicker;
-        }
+    *to_mm = whole || last.element == r->count ? end_mm : route_element(r, last.element)->start_mm;
+    if (now->finished || last.time > 0.0f) {
+        return path_time_of_all(now) < time_of_all(now, whole ? times : LONGER * times);
     }
-    *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
-    if (last.time > 0.0f) {
-        return is_quicker_on(now, time - now->rest_s, path_time(now, w->element[0]));
-    }
-    const float gained = now->finished ? time_of_rests(now) - now->rest_s : now->rest_s;
-
-    return path_time(now, w->element[0]) + gained < time ||
-           takt_exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
+    return times > 1.0f || UNKNOWN * path_time_of_all(now) < time_of_all(now, times);
 }
 
 /*

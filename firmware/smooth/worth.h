@@ -41,6 +41,8 @@ struct worth_since {
  * to_mm: that place, or the next one where there is none.
  */
 bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm);
+/* From rest: how long a curve takes to the end of what is known, if it takes as large a part of the path's time as on its pieces. */
+float takt_worth_time(const struct worth_window *now);
 /* Is the path so much quicker to where the pieces end, with what has been taken on the first stretch before, that a change is worth it? */
 bool takt_worth_path(const struct worth_window *now, struct worth_since *since);
 

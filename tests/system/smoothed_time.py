@@ -27,7 +27,7 @@ STROKES_MOST = 1.15
 # Of random programs this part is slower, and by this at most.
 SLOWER_PART = 0.05
 SLOWER_MOST = 1.6
-WIDER_PART = 0.25
+WIDER_PART = 0.15
 WIDER_MOST = 2.0
 
 CORNERS = ((4, 1), (1, 3), (6, 4), (2, 6), (7, 7))
@@ -117,6 +117,15 @@ def joints_that_are_not_worth_passing_are_rests():
         t.check(time_s <= part * exact_s, f"the quicker of curve and path is taken: {seed}", time_s, exact_s)
 
 
+def what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker():
+    """In all of it only a slower curve is found: so a doubled tolerance made them up to 1.9 times slower."""
+    for seed in (110170, 330059, 550099, 550119, 880036, 880252):
+        program, machine = draw(seed)
+        time_s, wide_s = time_of(program, machine), time_of(wider(program), machine)
+        t.check(wide_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled tolerance makes it no slower: {seed}", wide_s, time_s)
+
+
+what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker()
 joints_that_are_not_worth_passing_are_rests()
 what_a_change_of_rate_is_left_is_told_by_the_axes_on_the_path()
 for mm_s2 in (250.0, 500.0, 1000.0, 5000.0):
