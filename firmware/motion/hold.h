@@ -30,9 +30,9 @@
  *
  *     first[axes] | second[axes] | second_end[axes] | top
  */
-static inline unsigned hold_stride(unsigned axes)
+static inline size_t hold_stride(unsigned axes)
 {
-    return 3 * axes + 1;
+    return 3 * (size_t)axes + 1;
 }
 
 /* Where the setpoint is, in pieces from the start of one, and how it moves. */
@@ -90,7 +90,7 @@ struct hold {
 /* Piece k, if it is known. */
 static inline const float *hold_piece(const struct hold *h, uint32_t k)
 {
-    return h->store + (size_t)(k % h->pieces) * hold_stride(h->axes);
+    return h->store + (k % h->pieces) * hold_stride(h->axes);
 }
 
 /* Before it is asked for the first time: the axes, and memory for pieces. False: that is too little. */

@@ -115,7 +115,7 @@ static bool piece_can(struct hold *h, uint32_t k, float f, float g, const struct
     if (++h->looked > LOOKED_MAX) {
         return false;
     }
-    if (p->rate.high > piece[3 * h->axes]) {
+    if (p->rate.high > piece[hold_stride(h->axes) - 1]) {
         return false;
     }
     for (unsigned i = 0; i < h->axes; i++) {

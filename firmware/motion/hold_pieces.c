@@ -67,7 +67,7 @@ bool takt_hold_is_behind(const struct hold *h, const struct path *path, uint32_t
 /* Where piece k is, or is to be. */
 static float *piece_at(struct hold *h, uint32_t k)
 {
-    return h->store + (size_t)(k % h->pieces) * hold_stride(h->axes);
+    return h->store + (k % h->pieces) * hold_stride(h->axes);
 }
 
 /* -- of a smoothed curve -- */
@@ -89,7 +89,7 @@ static void read_smooth(struct hold *h, const struct path *path)
         p[h->axes + i] = (float)(step1 - step0);
         p[2 * h->axes + i] = (float)(step2 - step1);
     }
-    p[3 * h->axes] = top_of(h, path, h->end);
+    p[hold_stride(h->axes) - 1] = top_of(h, path, h->end);
 }
 
 /* Does the block go on with the curve of the one before? */
@@ -119,7 +119,7 @@ static void compute_start(struct hold *h, struct path *path, uint32_t k)
         p[i] = (float)(t.at[h->axis[i]] * part);
         p[h->axes + i] = 0.0f;
     }
-    p[3 * h->axes] = h->part_top;
+    p[hold_stride(h->axes) - 1] = h->part_top;
     if (c->kind == CURVE_ARC) {
         const double turn = c->arc.sweep_rad * part / c->length_mm;
 

@@ -18,9 +18,9 @@
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
 
-/* From rest a curve is also looked for in narrower parts of the tolerance: the least of them, and by how much they differ. */
-#define PART_LEAST 0.25f
-#define PARTS      2.0f
+/* From rest a curve is also looked for in narrower parts of the tolerance. */
+#define PARTS 3U
+static const float parts[PARTS] = {0.25f, 0.5f, 1.0f};
 
 /* Where the chain goes on behind the window, a narrower one must be quicker by this: longer intervals reach farther ahead. */
 #define CLEARLY 0.85f
@@ -281,14 +281,14 @@ static void search_from_rest(struct smooth *s, union smooth_scratch *scratch,
     float least = SINGLE_INFINITY;
     float best = 1.0f;
 
-    for (float part = PART_LEAST; part <= 1.0f; part *= PARTS) {
-        takt_fill_within(s, part);
+    for (unsigned i = 0; i < PARTS; i++) {
+        takt_fill_within(s, parts[i]);
         search_anew(s, scratch, v);
         const float time = found_time(s, scratch, &until_mm);
 
         if ((is_end(s, s->ready) ? 1.0f : CLEARLY) * time <= least) {
             least = time;
-            best = part;
+            best = parts[i];
         }
     }
     if (best < 1.0f) {
