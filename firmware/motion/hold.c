@@ -254,6 +254,9 @@ static bool try_step(struct hold *h, const struct path *path, const struct refer
         return false;
     }
     advance(&place, by, 1.0);
+    if (place.at < h->place.at) {
+        return false; /* the rate would turn back within the cycle */
+    }
     const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
     if (next.rate > h->most || !takt_hold_can_go(h, &here, &next, (float)by)) {

@@ -427,6 +427,8 @@ static void test_rare_programs_keep_the_limits(void)
     TEST_ASSERT_TRUE(check_program(2044, false, SINGLE_SWITCHED));
     /* in the last cycle before rest a hold found that the axes had turned back */
     TEST_ASSERT_TRUE(check_program(5113, true, SINGLE_SWITCHED));
+    /* in the last cycle before rest a hold would have turned back, by some 1e-8 mm */
+    TEST_ASSERT_TRUE(check_program(156, false, SINGLE_SWITCHED));
     /* from a stop inside a chain the curve began the motion before */
     TEST_ASSERT_TRUE(check_program(285, true, SINGLE_OFF));
     /* a motion of blocks of less and less acceleration, and a junction behind, was passed */
