@@ -104,7 +104,7 @@ double takt_reference_halt_acceleration(const struct reference *l)
 {
     const double gap = path_mm(l->at, l->halt.end) - l->feed * waiting(l);
 
-    TAKT_ASSERT(l->halt.begun);
+    TAKT_ASSERT(l->halt.begun || l->halt.found); /* an end that binds is kept when switched off */
     return is_bound(l) ? maths_min(free_acceleration(l), 0.5 * reference_square(l->feed) / gap)
                        : junction_acceleration(l);
 }

@@ -425,6 +425,8 @@ static void test_rare_programs_keep_the_limits(void)
     /* switched off before a junction of less acceleration, too late to land on it or to rest there */
     TEST_ASSERT_TRUE(check_program(372, false, SINGLE_SWITCHED));
     TEST_ASSERT_TRUE(check_program(2044, false, SINGLE_SWITCHED));
+    /* an end was kept that a junction in view bound it to, and was braked for after it was switched off */
+    TEST_ASSERT_TRUE(check_program(1622, false, SINGLE_SWITCHED));
     /* in the last cycle before rest a hold found that the axes had turned back */
     TEST_ASSERT_TRUE(check_program(5113, true, SINGLE_SWITCHED));
     /* in the last cycle before rest a hold would have turned back, by some 1e-8 mm */
