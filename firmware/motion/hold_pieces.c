@@ -208,15 +208,17 @@ static void set_turn(struct hold *h, const struct curve *c, double length_mm)
 
 /*
  * A part s of a circle that turns by w: its second derivative is w^3 s/8 at most off the line between those at both ends, its
- * third one w^3 s/2 off their difference. Where the radius changes by d in all, what that adds is beside it: 2 w^2 d and 3 w^3 d
- * over the angle of all.
+ * third one w^3 s/2 off their difference. Where the radius changes by d over an angle t it moves outwards too, 2 w^2 d/t and
+ * 3 w^3 d/t, and turns by up to d/2R more or less, w^2 d and 3/2 w^3 d.
  */
 static void set_off(struct hold *h, const struct curve *c, double length_mm, double turn)
 {
     const double square = turn * turn;
-    const double widens =
-        c->kind == CURVE_ARC ? maths_abs(c->arc.radius_change_mm / c->arc.sweep_rad) : 0.0;
+    double widens = 0.0;
 
+    if (c->kind == CURVE_ARC) {
+        widens = maths_abs(c->arc.radius_change_mm) * (0.5 + 1.0 / maths_abs(c->arc.sweep_rad));
+    }
     h->off_second = (float)(square * (0.125 * turn * length_mm + 2.0 * widens));
     h->off_third = (float)(square * turn * (0.5 * length_mm + 3.0 * widens));
 }

@@ -1,4 +1,5 @@
 /* A feed hold on an arc or a line of the exact path, and the way back to the trapezoidal reference. */
+#include "base/maths.h"
 #include "motion/motion.h"
 #include "plan/path.h"
 
@@ -16,8 +17,13 @@ static struct plan_limits limits;
 static struct path path;
 static struct motion motion;
 static struct motion_operator asked;
-static enum move_kind kind; /* MOVE_ARC_CCW, or a line */
+static enum move_kind kind;  /* MOVE_ARC_CCW, or a line */
+static double end_radius_mm; /* of the circle */
 static bool pushed;
+
+/* The setpoint and the two before, and the most that second differences have been of the limit. */
+static struct point setpoint[3];
+static double acceleration;
 
 static void set_up(enum move_kind one, double velocity_mm_s, double jerk_mm_s3,
                    enum ramp_profile law)
@@ -36,7 +42,12 @@ static void set_up(enum move_kind one, double velocity_mm_s, double jerk_mm_s3,
     takt_path_init(&path, &limits, &start);
     takt_motion_init(&motion, &path, &start, false);
     asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    end_radius_mm = RADIUS_MM;
     pushed = false;
+    acceleration = 0.0;
+    for (unsigned i = 0; i < 3; i++) {
+        setpoint[i] = start;
+    }
 }
 
 void setUp(void)
@@ -69,7 +80,7 @@ static void plan(void)
     }
     takt_path_go_on(&path);
     if (!pushed) {
-        push(kind, kind == MOVE_ARC_CCW ? RADIUS_MM : 5.0 * limits.velocity_mm_s[AXIS_X]);
+        push(kind, kind == MOVE_ARC_CCW ? end_radius_mm : 5.0 * limits.velocity_mm_s[AXIS_X]);
         push(MOVE_END, 0.0);
         takt_path_finish(&path);
         pushed = true;
@@ -77,12 +88,30 @@ static void plan(void)
     takt_motion_build(&motion);
 }
 
+static void measure(const struct point *p)
+{
+    setpoint[0] = setpoint[1];
+    setpoint[1] = setpoint[2];
+    setpoint[2] = *p;
+    for (int i = 0; i < 2; i++) {
+        const double mm = setpoint[0].at[i] - 2.0 * setpoint[1].at[i] + setpoint[2].at[i];
+
+        acceleration = maths_max(acceleration, maths_abs(mm) / (limits.acceleration_mm_s2[i] *
+                                                                limits.cycle_s * limits.cycle_s));
+    }
+}
+
 static enum motion_result cycle(void)
 {
     struct cycle_record record;
 
     plan();
-    return takt_motion_cycle(&motion, &asked, &record);
+    const enum motion_result result = takt_motion_cycle(&motion, &asked, &record);
+
+    if (result == MOTION_CYCLE) {
+        measure(&record.cmd);
+    }
+    return result;
 }
 
 static void run(unsigned cycles)
@@ -123,6 +152,19 @@ static void test_a_hold_on_an_arc_from_any_moment_takes_hardly_longer_than_a_ram
         run(held);
         TEST_ASSERT_LESS_OR_EQUAL_UINT(HOLD_CYCLES_MAX, cycles_to_rest());
         assert_goes_on_to_the_end();
+    }
+}
+
+/* Its angle does not grow evenly with its length, and a hold uses all of the acceleration. */
+static void test_on_an_arc_whose_radius_changes_a_little_no_acceleration_is_exceeded(void)
+{
+    for (unsigned held = 20; held < 8000; held += 61) {
+        setUp();
+        end_radius_mm = RADIUS_MM * 0.9991;
+        run(held);
+        (void)cycles_to_rest();
+        assert_goes_on_to_the_end();
+        TEST_ASSERT_TRUE(acceleration <= 1.0001);
     }
 }
 
@@ -178,6 +220,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_hold_on_an_arc_from_any_moment_takes_hardly_longer_than_a_ramp);
+    RUN_TEST(test_on_an_arc_whose_radius_changes_a_little_no_acceleration_is_exceeded);
     RUN_TEST(test_a_hold_on_a_line_does_not_take_what_the_law_of_ramps_takes);
     RUN_TEST(test_the_trapezoidal_reference_goes_on_where_it_can_rest_before_the_end);
     RUN_TEST(test_where_the_averages_leave_no_memory_the_trapezoidal_reference_brakes);
