@@ -19,8 +19,7 @@ static void init_smooth(struct path *p)
 {
     struct smooth_limits limits = {.axes = p->limits.axes,
                                    .cycle_s = p->limits.cycle_s,
-                                   .windows =
-                                       0.5 + 0.5 * takt_ramp_profile_boxes(p->limits.profile)};
+                                   .windows = takt_ramp_profile_windows(p->limits.profile)};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits.velocity_mm_s[i] = p->limits.velocity_mm_s[i];

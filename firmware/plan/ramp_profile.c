@@ -22,6 +22,11 @@ unsigned takt_ramp_profile_boxes(enum ramp_profile profile)
     return 3;
 }
 
+double takt_ramp_profile_windows(enum ramp_profile profile)
+{
+    return 0.5 + 0.5 * (double)takt_ramp_profile_boxes(profile);
+}
+
 uint32_t takt_ramp_profile_box_cycles(unsigned i, uint32_t cycles)
 {
     return i == 0 ? cycles : (cycles + 1) / 2;

@@ -18,6 +18,9 @@ enum ramp_profile {
 
 #define RAMP_PROFILE_BOXES_MAX 3
 
+/* All boxes together, in parts of the first one. */
+double takt_ramp_profile_windows(enum ramp_profile profile);
+
 /* Cycles of a box at most. */
 #define RAMP_PROFILE_CYCLES_MAX 256
 

@@ -305,22 +305,26 @@ static double predict(const struct span *s, uint32_t box)
 /* -- the window -- */
 
 /*
- * The longest window that can be of use: A/J lets a ramp reach its full acceleration; a ramp to a feed F that does not
- * needs sqrt(F/J), a span of length L cbrt(L/2J).
+ * The longest first box N that can be of use, by a profile of windows w N: with A/J a ramp reaches its full acceleration. A ramp to a
+ * feed F that does not, a = J N, takes F/a + w N: least with sqrt(F/wJ). From rest to rest over L it takes twice R + w N, with
+ * L = a R (R + w N): least with cbrt(L/2Jw^2).
  */
 static uint32_t longest_box(const struct span *s)
 {
+    const double w = takt_ramp_profile_windows(s->profile);
     double cycles = 0.0;
     double j = MATHS_INFINITY;
 
     for (unsigned k = 0; k < s->count; k++) {
         const struct part *p = &s->part[k];
 
-        cycles = maths_max(cycles, maths_min(p->a / p->j, maths_sqrt(p->feed / p->j)));
+        cycles = maths_max(cycles, maths_min(p->a / p->j, maths_sqrt(p->feed / (w * p->j))));
         j = maths_min(j, p->j);
     }
     if (s->known) {
-        cycles = maths_min(cycles, takt_maths_cbrt(s->part[s->count - 1].end_mm / (2.0 * j)));
+        const double length_mm = s->part[s->count - 1].end_mm;
+
+        cycles = maths_min(cycles, takt_maths_cbrt(length_mm / (2.0 * j * w * w)));
     }
     return (uint32_t)maths_clamp(takt_maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
                                  takt_ramp_profile_cycles_max(s->profile));

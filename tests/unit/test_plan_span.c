@@ -51,6 +51,29 @@ static void test_a_slow_span_has_the_window_of_its_ramp(void)
     TEST_ASSERT_EQUAL(10, cycles_of_first());
 }
 
+static uint32_t cycles_by(enum ramp_profile profile, double length_mm, double feed_mm_s)
+{
+    const struct point start = {{0}};
+    struct plan_limits other = limits;
+
+    x_mm = 0.0;
+    other.profile = profile;
+    takt_path_init(&path, &other, &start);
+    push(length_mm, feed_mm_s);
+    takt_path_finish(&path);
+    return cycles_of_first();
+}
+
+/* Boxes that take 1.5 or twice as long as their first: sqrt(F / wJ) to a feed F, cbrt(L / 2Jw^2) from rest to rest over L. */
+static void test_by_a_profile_of_more_boxes_the_first_is_shorter(void)
+{
+    TEST_ASSERT_EQUAL(9, cycles_by(RAMP_PROFILE_SMOOTH, 100.0, 5.0));
+    TEST_ASSERT_EQUAL(8, cycles_by(RAMP_PROFILE_GENTLE, 100.0, 5.0));
+    TEST_ASSERT_EQUAL(16, cycles_by(RAMP_PROFILE_JERK, 0.4, 100.0));
+    TEST_ASSERT_EQUAL(13, cycles_by(RAMP_PROFILE_SMOOTH, 0.4, 100.0));
+    TEST_ASSERT_EQUAL(10, cycles_by(RAMP_PROFILE_GENTLE, 0.4, 100.0));
+}
+
 /* A slow end is come to earlier by half a window at its feed: here 0.7 of the longest window is the fastest. */
 static void test_a_slow_block_at_the_end_asks_for_a_shorter_window(void)
 {
@@ -141,6 +164,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_long_fast_span_has_the_window_of_full_acceleration);
     RUN_TEST(test_a_slow_span_has_the_window_of_its_ramp);
+    RUN_TEST(test_by_a_profile_of_more_boxes_the_first_is_shorter);
     RUN_TEST(test_a_slow_block_at_the_end_asks_for_a_shorter_window);
     RUN_TEST(test_a_span_whose_end_is_out_of_sight_has_the_longest_window);
     RUN_TEST(test_the_override_does_not_change_the_window);
