@@ -112,7 +112,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->exact = false;
     s->since = (struct worth_since){.element = 0};
     s->starts = true;
-    s->standing = 0;
+    s->stands = false;
     takt_order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->tried_mm = 0.0;

@@ -4,18 +4,30 @@
 #include "smooth/fill.h"
 
 #include "base/assert.h"
+#include "base/maths.h"
 #include "smooth/interval.h"
 #include "smooth/nominal.h"
 
+/* A chain that goes on behind what is known is expected to be so many times as long: README.md. */
+#define EXPECTED 4.0
+
+static struct verifier_way way_of(const struct smooth *s)
+{
+    const struct route *r = &s->route;
+    const double known_mm = takt_route_end(r) - route_element(r, r->first)->start_mm;
+
+    return (struct verifier_way){s->finished ? known_mm : EXPECTED * known_mm, s->finished};
+}
+
 /* How the rate may change: as these axes allow. What others do is nothing to it. */
 static void find_change(const struct smooth *s, unsigned axes, double interval_s,
-                        struct verifier_change *change)
+                        const struct verifier_way *way, struct verifier_change *change)
 {
     struct smooth_limits limits = s->limits;
 
     limits.axes &= axes;
     takt_smooth_limit(&limits, s->route.tolerance_mm);
-    takt_verifier_change(&limits, interval_s, change);
+    takt_verifier_change(&limits, interval_s, way, change);
 }
 
 /* What merging uses of the tolerance makes no interval shorter. */
@@ -29,9 +41,10 @@ static double find_interval(const struct smooth *s, unsigned axes)
 static void set_interval(struct smooth *s)
 {
     const double interval_s = find_interval(s, s->route.moved);
-    TAKT_ASSERT(interval_s > 0.0);
+    const struct verifier_way way = way_of(s);
 
-    find_change(s, s->route.moved, interval_s, &s->change);
+    TAKT_ASSERT(interval_s > 0.0);
+    find_change(s, s->route.moved, interval_s, &way, &s->change);
     s->route.slots.change_per_s = (float)s->change.wanted;
     s->route.slots.rounded_per_s2 = (float)(s->change.wanted / s->change.rounding_s);
     s->route.chord_per_second =
@@ -98,15 +111,20 @@ static void forget_end(struct smooth *s)
 
 bool takt_fill_fits(const struct smooth *s, unsigned axes)
 {
-    struct verifier_change change;
+    const struct verifier_way any = {MATHS_INFINITY, false};
+    struct verifier_change before;
+    struct verifier_change after;
 
     if (s->window.count == 0 || (axes & ~s->route.moved) == 0) {
         return true;
     }
+    const double interval_s = s->window.interval_s;
+
     axes |= s->route.moved;
-    find_change(s, axes, s->window.interval_s, &change);
-    return find_interval(s, axes) <= s->window.interval_s && change.by >= s->change.by &&
-           change.rounding_s <= s->change.rounding_s;
+    find_change(s, s->route.moved, interval_s, &any, &before);
+    find_change(s, axes, interval_s, &any, &after);
+    return find_interval(s, axes) <= interval_s && after.by >= before.by &&
+           after.rounding_s <= before.rounding_s;
 }
 
 /* Is the route still not known far enough for the place that was tried last? One that has been passed says nothing. */

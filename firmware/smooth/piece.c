@@ -5,19 +5,16 @@
 
 #include <string.h>
 
-/* How the rate changes while the axes stand: from none to all of it in this part of what changes are rounded over. */
-#define STANDING_RAMP 0.5
-
-/* Windows and ramps are whole cycles, and so is where the trapezoidal reference begins. */
-#define STANDING_CYCLES 4.0
+/* Windows are whole cycles, and so is where the trapezoidal reference begins. */
+#define STANDING_CYCLES 3.0
 
 /*
  * At both ends of what begins and ends at rest by itself the axes stand, and the rate of nominal time rises and falls: over
- * a ramp of R and, of the setpoint, the windows W of its averages more. By then nominal time is at R/2 + W/2.
+ * a cycle, and the setpoint's over the windows W of its averages more. By then nominal time is at W/2.
  */
 static double ramp_s(const struct smooth *s)
 {
-    return 0.5 * (STANDING_RAMP + s->limits.windows) * s->change.rounding_s;
+    return 0.5 * (s->limits.cycle_s + s->limits.windows * s->change.rounding_s);
 }
 
 static double standing_s(const struct smooth *s)
@@ -81,30 +78,30 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
 void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
                        bool leaves)
 {
-    TAKT_ASSERT(s->standing == 0);
+    TAKT_ASSERT(!s->stands);
     s->stand_rotary = of->rotary;
     s->stand_number = of->number;
     s->stand_at = *at;
-    s->standing = (unsigned)(standing_s(s) / s->window.interval_s) + 1;
+    s->stands = true;
     s->leaves = leaves;
 }
 
 void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
 {
-    const double change_per_s = 1.0 / (STANDING_RAMP * s->change.rounding_s);
+    const double change_per_s = 1.0 / s->limits.cycle_s;
     const struct point at = s->stand_at;
 
-    TAKT_ASSERT(s->standing > 0);
-    s->standing--;
+    TAKT_ASSERT(s->stands);
+    s->stands = false;
     *piece = (struct smooth_piece){
         .move = &s->move,
         .number = s->stand_number,
         .control = {at, at, at, at},
-        .interval_s = s->window.interval_s,
+        .interval_s = standing_s(s),
         .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
         .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
         .rotary = s->stand_rotary,
-        .last = s->standing == 0 && !s->leaves,
+        .last = !s->leaves,
     };
     if (piece->last) {
         takt_smooth_end(s);

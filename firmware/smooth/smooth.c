@@ -412,7 +412,7 @@ enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scrat
                                    struct smooth_piece *piece, struct curve *curve)
 {
     while (s->open) {
-        if (s->standing > 0) {
+        if (s->stands) {
             takt_smooth_take_standing(s, piece);
             return SMOOTH_PIECE;
         }

@@ -82,7 +82,7 @@ struct smooth {
     double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
     bool exact;       /* it is */
     struct worth_since since;
-    unsigned standing; /* pieces that are still to come, in which the axes stand */
+    bool stands;       /* a piece is still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
     bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
     bool stand_rotary; /* of the piece before or behind them, */

@@ -30,9 +30,15 @@ struct verifier_change {
     double rounding_s; /* over which it is rounded */
 };
 
+/* The way of a chain to its end. */
+struct verifier_way {
+    double expected_mm; /* infinite: as long as it may be */
+    bool whole;         /* all of it is known */
+};
+
 /* What a machine's axes are left for changes of rate, where a piece takes so long. */
 void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
-                          struct verifier_change *change);
+                          const struct verifier_way *way, struct verifier_change *change);
 void takt_verifier_need(const struct window *w, const struct route *r, unsigned piece,
                         struct verifier_need *need);
 void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,

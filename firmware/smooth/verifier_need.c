@@ -115,30 +115,69 @@ static double change_at_full(const struct smooth_limits *limits, double interval
     return maths_clamp(change_needed(interval_s), LEFT_LEAST * most, LEFT_MOST * most);
 }
 
+/* The least J/V of the axes, 1/s2. */
+static double least_jerk_of_velocity(const struct smooth_limits *limits)
+{
+    double least = MATHS_INFINITY;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            least = maths_min(least, limits->jerk_mm_s3[i] / limits->velocity_mm_s[i]);
+        }
+    }
+    return least;
+}
+
+/* The least jerk of the axes, as distances count: mm/s3. */
+static double least_jerk(const struct smooth_limits *limits)
+{
+    double least = MATHS_INFINITY;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            least = maths_min(least, smooth_weight(i) * limits->jerk_mm_s3[i]);
+        }
+    }
+    return least;
+}
+
 /*
- * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
- * slower that no axis needs more than its part of the jerk for it: V r'/R <= part J.
+ * Over R are changes of rate rounded: what the axes need from no acceleration to all of it, A/J. On a short way x it is less: at
+ * both ends the axes stand for as long as the rate needs for w windows of R, and what beginning to change it may need of the
+ * jerk, x' r'/R, makes the curve slower by a third of that part of it where jerk binds, as if that were half of the way: by
+ * x r'/(6 R J) in all. The sum is least where
+ *
+ *     R^2 = x r'/(12 w J)
+ */
+static double rounding_of_way(const struct smooth_limits *limits, double by, double way_mm)
+{
+    return maths_sqrt(way_mm * by / (12.0 * limits->windows * least_jerk(limits)));
+}
+
+/*
+ * Where changes are rounded over less than A/J they are so slow that no axis needs more than its part of the jerk for them, V r'/R <=
+ * part J. A chain that goes on behind what is known needs them for that, so it has no shorter R.
  */
 void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
-                          struct verifier_change *change)
+                          const struct verifier_way *way, struct verifier_change *change)
 {
-    double rounding_s = limits->cycle_s;
-    double most = MATHS_INFINITY;
+    const double most = ROUNDING_PART * least_jerk_of_velocity(limits);
+    double ramp_s = limits->cycle_s;
 
-    TAKT_ASSERT(interval_s > 0.0);
+    TAKT_ASSERT(interval_s > 0.0 && way->expected_mm > 0.0);
     change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
-            const double ramp_s = reached(limits, i) / limits->jerk_mm_s3[i];
-
             change->by = maths_min(change->by, change_at_full(limits, interval_s, i));
-            rounding_s = maths_max(rounding_s, ramp_s);
-            most =
-                maths_min(most, ROUNDING_PART * limits->jerk_mm_s3[i] / limits->velocity_mm_s[i]);
+            ramp_s = maths_max(ramp_s, reached(limits, i) / limits->jerk_mm_s3[i]);
         }
     }
-    change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
-    if (change->rounding_s < rounding_s) {
+    const double least = maths_max(limits->cycle_s, way->whole ? 0.0 : change->by / most);
+    const double wanted = maths_max(least, rounding_of_way(limits, change->by, way->expected_mm));
+
+    change->rounding_s =
+        maths_min(maths_min(ramp_s, ROUNDING_CYCLES_MAX * limits->cycle_s), wanted);
+    if (change->rounding_s < ramp_s) {
         change->by = maths_min(change->by, most * change->rounding_s);
     }
     change->wanted = change->by;

@@ -1,5 +1,6 @@
 #include "smooth/worth.h"
 
+#include "base/assert.h"
 #include "smooth/exact.h"
 #include "smooth/single.h"
 
@@ -112,19 +113,30 @@ static float time_of_part(float all, float cruise, float part)
     return part > 0.5f ? all - time : time;
 }
 
-/* From rest at the start of an element to where the pieces end, of the last element a part. */
+/* The last place at or before the start of an element, but behind first, where the path rests; or that one: index of an element. */
+static uint32_t rest_before(const struct worth_window *now, uint32_t element, uint32_t first)
+{
+    while (element > first && !takt_exact_rests(now->route, now->machine, element)) {
+        element--;
+    }
+    return element;
+}
+
+/* From rest at the start of an element to where the pieces end: of the way between two rests a part. */
 static float path_time(const struct worth_window *now, uint32_t first)
 {
     const struct route *r = now->route;
     const double at_mm = now->window->at_mm[now->pieces + 1];
     const uint32_t last = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
-    const double start_mm = route_element(r, last)->start_mm;
-    const float length = (float)(route_end_of(r, last) - start_mm);
+    const uint32_t from = rest_before(now, last, first);
+    const uint32_t to = next_rest(now, last);
+    const double start_mm = route_element(r, from)->start_mm;
+    const float cruise = takt_route_time(r, from, start_mm, route_end_of(r, to - 1));
 
-    return takt_exact_time(r, now->machine, 0.0, first, last) +
-           time_of_part(takt_exact_time(r, now->machine, 0.0, last, last + 1),
-                        length / route_element(r, last)->feed_mm_s,
-                        (float)(at_mm - start_mm) / length);
+    TAKT_ASSERT(from >= first && to > last && cruise > 0.0f);
+    return takt_exact_time(r, now->machine, 0.0, first, from) +
+           time_of_part(takt_exact_time(r, now->machine, 0.0, from, to), cruise,
+                        takt_route_time(r, from, start_mm, at_mm) / cruise);
 }
 
 /* A curve takes up to so many times what its pieces seem to take: of 1,200 random programs most are within it. */
@@ -181,13 +193,10 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
     const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
-    uint32_t first = w->element[1];
+    const uint32_t first = rest_before(now, w->element[1], now->route->first);
     struct passed last;
     const float time = go(now, since->rate, &last);
 
-    while (first > now->route->first && !takt_exact_rests(now->route, now->machine, first)) {
-        first--;
-    }
     if (first != since->element) {
         *since = (struct worth_since){.element = first};
     }

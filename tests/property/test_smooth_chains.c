@@ -310,7 +310,7 @@ static void test_single_block_switched_inside_chains_keeps_all_of_it(void)
 {
     unsigned singles = 0;
 
-    for (unsigned seed = first_seed; seed < first_seed + programs / 3; seed++) {
+    for (unsigned seed = first_seed; seed < first_seed + 2 * programs / 3; seed++) {
         set_up_run(&run, seed);
         run.single_cycles = 200 + 100 * (seed % 7);
         check_run(&run, run_program(&run), seed);

@@ -5,6 +5,7 @@ random programs on random machines (tests/bench/hunting; seeds are fixed) still 
 bounded here.
 """
 
+import copy
 import json
 import os
 import random
@@ -125,7 +126,26 @@ def what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker():
         t.check(wide_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled tolerance makes it no slower: {seed}", wide_s, time_s)
 
 
+def short_chains_stand_no_longer_by_a_higher_acceleration():
+    """At both ends they stood for A/J, however short: with A doubled they took up to 1.57 times as long."""
+    for seed in (120118, 120123, 120159, 120195, 120285):
+        program, machine = draw(seed)
+        higher = copy.deepcopy(machine)
+        higher.axes = {axis: (v, 2 * a, j) for axis, (v, a, j) in machine.axes.items()}
+        time_s, higher_s = time_of(program, machine), time_of(program, higher)
+        t.check(higher_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled acceleration makes it no slower: {seed}", higher_s, time_s)
+
+
+def the_path_is_timed_from_rest_to_rest():
+    """A change of feed on a line was counted as a rest of the path: so a slower curve was taken."""
+    program = "G21 G90 G17 G64 P0.02 F6000\nG1 X10\nG1 X20 F3000\nM2\n"
+    exact_s, time_s = time_of(program, hunt_programs.built_in(), "--exact-path"), time_of(program, hunt_programs.built_in())
+    t.check(time_s <= exact_s, "a line of two feeds is as quick as on the exact path", time_s, exact_s)
+
+
 what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker()
+short_chains_stand_no_longer_by_a_higher_acceleration()
+the_path_is_timed_from_rest_to_rest()
 joints_that_are_not_worth_passing_are_rests()
 what_a_change_of_rate_is_left_is_told_by_the_axes_on_the_path()
 for mm_s2 in (250.0, 500.0, 1000.0, 5000.0):

@@ -23,16 +23,24 @@ void tearDown(void)
 /* That of a tolerance of 0.02 mm at 1000 mm/s2. */
 #define INTERVAL_S 4e-3
 
+static void find_change(double interval_s, double way_mm, bool whole)
+{
+    const struct verifier_way way = {way_mm, whole};
+
+    takt_verifier_change(&limits, interval_s, &way, &change);
+}
+
 /* One axis. */
 static void set_machine(double velocity, double acceleration, double jerk)
 {
     memset(&limits, 0, sizeof limits);
     limits.axes = 1;
+    limits.windows = 1.0;
     limits.cycle_s = 5e-4;
     limits.velocity_mm_s[AXIS_X] = velocity;
     limits.acceleration_mm_s2[AXIS_X] = acceleration;
     limits.jerk_mm_s3[AXIS_X] = jerk;
-    takt_verifier_change(&limits, INTERVAL_S, &change);
+    find_change(INTERVAL_S, MATHS_INFINITY, false);
     takt_route_init(&route, &limits, 0.01);
 }
 
@@ -69,11 +77,11 @@ static void test_a_change_is_rounded_over_the_time_that_the_acceleration_takes(v
 static void test_shorter_pieces_leave_more_for_changes_up_to_half(void)
 {
     set_machine(100.0, 250.0, 50000.0);
-    takt_verifier_change(&limits, 20e-3, &change);
+    find_change(20e-3, MATHS_INFINITY, false);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.06 * 2.5, change.by);
-    takt_verifier_change(&limits, 6e-3, &change);
+    find_change(6e-3, MATHS_INFINITY, false);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 / (2.0 * 0.7 * 256.0 * 6e-3), change.by);
-    takt_verifier_change(&limits, 1e-3, &change);
+    find_change(1e-3, MATHS_INFINITY, false);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * 2.5, change.by);
 }
 
@@ -91,15 +99,38 @@ static double left_at(double velocity)
 static void test_slow_axes_leave_what_a_stop_over_short_pieces_needs(void)
 {
     set_machine(100.0, 250.0, 50000.0);
-    takt_verifier_change(&limits, 1e-3, &change);
+    find_change(1e-3, MATHS_INFINITY, false);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.5, change.wanted);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.25, left_at(100.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.25, left_at(70.0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.5, left_at(51.0));
     TEST_ASSERT_TRUE((double)rate.most > 0.98);
     TEST_ASSERT_TRUE(left_at(5.0) > 10.0);
-    takt_verifier_change(&limits, 6e-3, &change);
+    find_change(6e-3, MATHS_INFINITY, false);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, change.by, change.wanted);
+}
+
+/* R^2 = x r'/(12 J), but a cycle at least and A/J = 20 ms at most; V r'/R is no more than 0.3 of J. */
+static void test_on_a_short_way_changes_of_rate_are_rounded_over_less(void)
+{
+    set_machine(100.0, 1000.0, 50000.0);
+    const double by = change.by;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20e-3, change.rounding_s);
+    find_change(INTERVAL_S, 1000.0, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20e-3, change.rounding_s);
+    find_change(INTERVAL_S, 100.0, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, by, change.by);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 100.0 * by / (12.0 * 50000.0),
+                              change.rounding_s * change.rounding_s);
+    find_change(INTERVAL_S, 1.0, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, by / (12.0 * 50000.0), change.rounding_s * change.rounding_s);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.3 * 500.0 * change.rounding_s, change.by);
+    find_change(INTERVAL_S, 0.01, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, limits.cycle_s, change.rounding_s);
+    find_change(INTERVAL_S, 1.0, false);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, by, change.by);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, by / (0.3 * 500.0), change.rounding_s);
 }
 
 /* V J/A^2 = 1/16: the axis comes to sqrt(V J), a quarter of A, at most. */
@@ -218,6 +249,7 @@ int main(void)
     RUN_TEST(test_a_change_is_rounded_over_the_time_that_the_acceleration_takes);
     RUN_TEST(test_shorter_pieces_leave_more_for_changes_up_to_half);
     RUN_TEST(test_slow_axes_leave_what_a_stop_over_short_pieces_needs);
+    RUN_TEST(test_on_a_short_way_changes_of_rate_are_rounded_over_less);
     RUN_TEST(test_acceleration_that_jerk_leaves_no_time_for_counts_for_nothing);
     RUN_TEST(test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate);
     RUN_TEST(test_no_machine_makes_a_curve_stand_that_needs_half_its_limits);
