@@ -83,7 +83,8 @@ bool takt_path_has_room(const struct path *p)
 
 uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks)
 {
-    return p->smooth.open && blocks < SMOOTH_AHEAD_PIECES ? SMOOTH_AHEAD_PIECES : blocks;
+    return (p->smooth.open || p->lent) && blocks < SMOOTH_AHEAD_PIECES ? SMOOTH_AHEAD_PIECES
+                                                                       : blocks;
 }
 
 /* The newest block, or the one that becomes it. */

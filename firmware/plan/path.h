@@ -88,7 +88,7 @@ void *takt_path_lend(struct path *p, size_t size);
 bool takt_path_has_room(const struct path *p);
 /*
  * How many blocks there should be ahead where this many are asked for: pieces of a smoothed chain are not blocks of the
- * program, and are needed to brake on.
+ * program, and are needed to brake on; a compiled program passes blocks whether they are known or not.
  */
 uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks);
 /* Appends the next move; a motion without length is counted and dropped. Needs room. */

@@ -309,27 +309,36 @@ static bool pass_pieces(struct motion *m)
     return false;
 }
 
-/* Blocks whose ends have been passed, as far as the path knows what follows; at the section's end all but its last piece. */
-static void pass_blocks(struct replay *r, struct motion *m, bool ended)
+/*
+ * Blocks whose ends have been passed, as far as the path knows what follows; at the section's end all but its last piece. False:
+ * some are left.
+ */
+static bool pass_blocks(struct replay *r, struct motion *m, bool ended)
 {
     const double here = ((double)r->interval + r->part) * REPLAY_END_PARTS;
 
     if (!r->has_end) { /* of a block longer than the ring of intervals the end comes later than the begin */
         take_end(r);
     }
-    for (unsigned i = 0; i < PASS_MAX || ended; i++) {
+    for (unsigned i = 0; i < PASS_MAX; i++) {
         if (!ended &&
             (r->blocks + 1 >= r->section.blocks || !r->has_end || here < (double)r->end)) {
-            break;
+            return true;
         }
-        if (!pass_pieces(m) || r->blocks + 1 >= r->section.blocks ||
-            m->path->first + 1 == m->path->closed) {
-            break;
+        if (!pass_pieces(m)) {
+            return false;
+        }
+        if (r->blocks + 1 >= r->section.blocks) {
+            return true;
+        }
+        if (m->path->first + 1 == m->path->closed) {
+            return false;
         }
         takt_handover_pass_block(m);
         r->blocks++;
         take_end(r);
     }
+    return false;
 }
 
 static double distance(const struct point *a, const struct point *b)
@@ -354,7 +363,6 @@ static bool ends_well(const struct replay *r, const struct motion *m)
 
 static void end_section(struct replay *r, struct motion *m, struct point *at)
 {
-    r->part = 1.0;
     if (ends_well(r, m)) {
         *at = path_first(m->path)->curve.end;
     } else {
@@ -363,17 +371,29 @@ static void end_section(struct replay *r, struct motion *m, struct point *at)
     r->begun = false;
 }
 
+/* Has all of the curve been gone along? */
+static bool is_over(const struct replay *r)
+{
+    return r->interval == r->section.intervals;
+}
+
+/* Will the path never know more? */
+static bool is_all_known(const struct path *p)
+{
+    return p->finished && p->first + 1 == p->closed;
+}
+
+/* At the end of the curve the axes stand until all blocks have been passed. */
 static void drive(struct replay *r, struct motion *m, double rate, bool single_block,
                   struct cycle_record *record)
 {
     const struct point before = m->at;
+    const bool over = is_over(r) || advance(r, rate, single_block);
+    const bool passed = r->stop == REPLAY_STOP_REACHED || pass_blocks(r, m, over);
+    const bool ended = over && (passed || is_all_known(m->path));
     struct point at = m->at;
-    bool ended;
 
-    ended = advance(r, rate, single_block);
-    if (r->stop != REPLAY_STOP_REACHED) {
-        pass_blocks(r, m, ended);
-    }
+    r->part = over ? 1.0 : r->part;
     if (ended) {
         end_section(r, m, &at);
     } else {
@@ -404,7 +424,7 @@ static bool stands_at_stop(struct replay *r, struct motion *m, double rate,
     }
     if (r->stop == REPLAY_STOP_TOLD && rate > 0.0 && !wanted->wait) {
         r->stop = REPLAY_NO_STOP;
-        pass_blocks(r, m, false);
+        (void)pass_blocks(r, m, false);
         return false;
     }
     takt_handover_add_cycle(m, &at, 0.0, r->stop == REPLAY_STOP_REACHED, record);

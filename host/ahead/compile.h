@@ -27,7 +27,7 @@
 #define COMPILE_SPEED_PART   0.9995
 
 /* A quantum is no more than this part of the least J tau^3, if there are so few cycles between knots. */
-#define COMPILE_QUANTUM_PART 0.05
+#define COMPILE_QUANTUM_PART 0.01
 
 enum compile_result {
     COMPILE_DONE,

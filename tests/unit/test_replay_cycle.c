@@ -39,14 +39,14 @@ static void add_record(enum replay_kind kind, const uint8_t *holds, size_t size)
 /* Bytes of what tells four intervals in which no block ends. */
 #define KNOTS_BYTES 26
 
-/* A section of one block and four intervals that stands where it starts. */
-static void add_section_of(uint32_t first_block, size_t knots_bytes)
+/* A section of so many blocks and four intervals that stands where it starts. */
+static void add_section_of(uint32_t first_block, uint32_t blocks, size_t knots_bytes)
 {
     uint8_t section[REPLAY_SECTION_BYTES] = {0};
     uint8_t knots[KNOTS_BYTES + 1] = {4};
 
     takt_replay_put(section, first_block, 4);
-    takt_replay_put(section + 4, 1, 4);
+    takt_replay_put(section + 4, blocks, 4);
     takt_replay_put(section + 8, 4, 4);
     add_record(REPLAY_SECTION, section, sizeof(section));
     add_record(REPLAY_KNOTS, knots, knots_bytes);
@@ -55,7 +55,24 @@ static void add_section_of(uint32_t first_block, size_t knots_bytes)
 
 static void add_section(uint32_t first_block)
 {
-    add_section_of(first_block, KNOTS_BYTES);
+    add_section_of(first_block, 1, KNOTS_BYTES);
+}
+
+static void push_line(double to_mm)
+{
+    struct move line = {.kind = MOVE_FEED, .feed_mm_s = 10, .turns = 1};
+
+    line.end.at[AXIS_X] = to_mm;
+    takt_path_push(&path, &line);
+}
+
+static void begin_path(void)
+{
+    const struct point start = {{0}};
+
+    takt_path_init(&path, &limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
+    takt_handover_allow_all(&motion);
 }
 
 void setUp(void)
@@ -66,8 +83,6 @@ void setUp(void)
                                          .ceiling_percent = 100,
                                          .intervals = 4,
                                          .kept = 0.99};
-    const struct point start = {{0}};
-    struct move line = {.kind = MOVE_FEED, .feed_mm_s = 10, .turns = 1};
 
     memset(&limits, 0, sizeof(limits));
     limits.axes = 7;
@@ -78,11 +93,8 @@ void setUp(void)
         limits.acceleration_mm_s2[i] = 1000;
         limits.jerk_mm_s3[i] = 50000;
     }
-    takt_path_init(&path, &limits, &start);
-    takt_motion_init(&motion, &path, &start, false);
-    takt_handover_allow_all(&motion);
-    line.end.at[AXIS_X] = 1;
-    takt_path_push(&path, &line);
+    begin_path();
+    push_line(1);
     takt_path_finish(&path);
     takt_path_go_on(&path);
     takt_motion_build(&motion);
@@ -133,6 +145,52 @@ static void test_a_curve_that_does_not_lead_to_the_end_is_told(void)
     TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_STRAYED, replay.alarm.code);
 }
 
+/* Forth and back in four blocks, of which the path knows three at first: cycles until the axes are at the end of all. */
+static unsigned cycles_with_a_late_block(unsigned late)
+{
+    const struct replay_source source = {.read = read_bytes};
+    const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
+    struct cycle_record record;
+    unsigned cycles = 0;
+
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
+    for (unsigned i = 0; i < 200; i++) {
+        takt_replay_read(&replay, &limits);
+        if (i == late) {
+            push_line(0);
+            takt_path_finish(&path);
+        }
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_path_go_on(&path);
+            takt_motion_build(&motion);
+        }
+        const enum motion_result result = takt_motion_cycle(&motion, &as_programmed, &record);
+
+        if (result == MOTION_EMPTY) {
+            return cycles;
+        }
+        if (result == MOTION_HANDED_OVER) {
+            TEST_ASSERT_EQUAL(REPLAY_CYCLE,
+                              takt_replay_cycle(&replay, &motion, &as_programmed, &record));
+            TEST_ASSERT_EQUAL_DOUBLE(0, record.cmd.at[AXIS_X]);
+            cycles = i;
+        }
+    }
+    TEST_FAIL_MESSAGE("it does not end");
+    return 0;
+}
+
+static void test_a_block_that_the_path_does_not_know_yet_is_waited_for_at_the_end_of_the_curve(void)
+{
+    begin_path();
+    push_line(1);
+    push_line(0);
+    push_line(1);
+    add_section_of(1, 4, KNOTS_BYTES);
+    TEST_ASSERT_EQUAL(80, cycles_with_a_late_block(80));
+    TEST_ASSERT_EQUAL(TAKT_OK, replay.alarm.code);
+}
+
 static void test_a_damaged_record_moves_nothing(void)
 {
     add_section(1);
@@ -143,7 +201,7 @@ static void test_a_damaged_record_moves_nothing(void)
 
 static void test_a_record_that_is_longer_than_what_it_tells_moves_nothing(void)
 {
-    add_section_of(1, KNOTS_BYTES + 1);
+    add_section_of(1, 1, KNOTS_BYTES + 1);
     TEST_ASSERT_EQUAL_DOUBLE(0, run_until_it_fails());
     TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_DAMAGED, replay.alarm.code);
 }
@@ -153,6 +211,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_section_of_another_block_moves_nothing);
     RUN_TEST(test_a_curve_that_does_not_lead_to_the_end_is_told);
+    RUN_TEST(test_a_block_that_the_path_does_not_know_yet_is_waited_for_at_the_end_of_the_curve);
     RUN_TEST(test_a_damaged_record_moves_nothing);
     RUN_TEST(test_a_record_that_is_longer_than_what_it_tells_moves_nothing);
     return UNITY_END();
