@@ -22,6 +22,9 @@
 #define PARTS 3U
 static const float parts[PARTS] = {0.25f, 0.5f, 1.0f};
 
+/* And in ever narrower ones as long as that is quicker. */
+#define PART_LEAST (1.0f / 64.0f)
+
 /* Where the chain goes on behind the window, a narrower one must be quicker by this: longer intervals reach farther ahead. */
 #define CLEARLY 0.85f
 
@@ -273,6 +276,21 @@ static float found_time(struct smooth *s, union smooth_scratch *scratch, double 
     return takt_worth_time(&now);
 }
 
+/* The time of the curve that is found in a part of the tolerance. */
+static float try_within(struct smooth *s, union smooth_scratch *scratch, float part,
+                        double *until_mm, struct verifier_verdict *v)
+{
+    takt_fill_within(s, part);
+    search_anew(s, scratch, v);
+    return found_time(s, scratch, until_mm);
+}
+
+/* How much quicker a narrower one must be. */
+static float worth_of_width(const struct smooth *s)
+{
+    return is_end(s, s->ready) ? 1.0f : CLEARLY;
+}
+
 /* What is found in a part of the tolerance is within all of it, and often the quicker: so the quickest is taken. */
 static void search_from_rest(struct smooth *s, union smooth_scratch *scratch,
                              struct verifier_verdict *v)
@@ -280,20 +298,27 @@ static void search_from_rest(struct smooth *s, union smooth_scratch *scratch,
     double until_mm = MATHS_INFINITY;
     float least = SINGLE_INFINITY;
     float best = 1.0f;
+    float part = parts[0];
 
     for (unsigned i = 0; i < PARTS; i++) {
-        takt_fill_within(s, parts[i]);
-        search_anew(s, scratch, v);
-        const float time = found_time(s, scratch, &until_mm);
+        const float time = try_within(s, scratch, parts[i], &until_mm, v);
 
-        if ((is_end(s, s->ready) ? 1.0f : CLEARLY) * time <= least) {
+        if (worth_of_width(s) * time < least) {
             least = time;
             best = parts[i];
         }
     }
+    while (best <= part && part > PART_LEAST) {
+        part *= 0.5f;
+        const float time = try_within(s, scratch, part, &until_mm, v);
+
+        if (time < worth_of_width(s) * least) {
+            least = time;
+            best = part;
+        }
+    }
     if (best < 1.0f) {
-        takt_fill_within(s, best);
-        search_anew(s, scratch, v);
+        (void)try_within(s, scratch, best, &until_mm, v);
     }
 }
 
