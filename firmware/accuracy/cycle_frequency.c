@@ -11,6 +11,7 @@
 /* H = F / f   (2) */
 double takt_cycle_step_mm(double feed_mm_s, double frequency_hz)
 {
+    TAKT_ASSERT(frequency_hz > 0.0);
     return feed_mm_s / frequency_hz;
 }
 
@@ -19,6 +20,7 @@ double takt_cycle_chord_error_mm(double radius_mm, double step_mm)
 {
     const double half = 0.5 * step_mm;
 
+    TAKT_ASSERT(radius_mm >= 0.0 && step_mm >= 0.0);
     if (half >= radius_mm) {
         return radius_mm;
     }
@@ -28,10 +30,14 @@ double takt_cycle_chord_error_mm(double radius_mm, double step_mm)
 /* Half the chord whose error is the tolerance, R > d / 2: sqrt(2 R d - d^2) */
 static double half_chord_mm(double radius_mm, double tolerance_mm)
 {
+    TAKT_ASSERT(tolerance_mm >= 0.0 && 2.0 * radius_mm >= tolerance_mm);
     return maths_sqrt(tolerance_mm * (2.0 * radius_mm - tolerance_mm));
 }
 
-/* f = F / (2 sqrt(2 R d - d^2))   (3). For R <= d no chord of at most half a turn is farther off than d. */
+/*
+ * f = F / (2 sqrt(2 R d - d^2))   (3). For R <= d no chord of at most half a turn is farther off
+ * than d.
+ */
 double takt_cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_mm)
 {
     if (radius_mm <= tolerance_mm) {
@@ -52,12 +58,14 @@ double takt_cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double 
 /* F = sqrt(R a)   (6) */
 double takt_cycle_feed_acceleration_mm_s(double radius_mm, double acceleration_mm_s2)
 {
+    TAKT_ASSERT(radius_mm >= 0.0 && acceleration_mm_s2 >= 0.0);
     return maths_sqrt(radius_mm * acceleration_mm_s2);
 }
 
 /* F = cbrt(J R^2)   (8): jerk of constant feed on a circle */
 double takt_cycle_feed_jerk_mm_s(double radius_mm, double jerk_mm_s3)
 {
+    TAKT_ASSERT(radius_mm >= 0.0 && jerk_mm_s3 >= 0.0);
     return jerk_mm_s3 == MATHS_INFINITY ? MATHS_INFINITY
                                         : takt_maths_cbrt(jerk_mm_s3 * radius_mm * radius_mm);
 }
@@ -96,9 +104,10 @@ static void consider(const struct cycle_limits *limits, double tolerance_mm, dou
 }
 
 /*
- * f(R) is F(R) / (2 sqrt(2 R d - d^2)) with F(R) the lowest of three curves. By its derivative it falls all along the
- * feed and the acceleration branch; on the jerk branch, F ~ R^(2/3), it falls until R = 2 d and rises from there. So
- * its highest value is at the lower end, R = d, or where two branches meet: at
+ * f(R) is F(R) / (2 sqrt(2 R d - d^2)) with F(R) the lowest of three curves. By its derivative it
+ * falls all along the feed and the acceleration branch; on the jerk branch, F ~ R^(2/3), it falls
+ * until R = 2 d and rises from there. So its highest value is at the lower end, R = d, or where two
+ * branches meet: at
  *     jerk and acceleration  R = a^3 / J^2
  *     jerk and feed          R = sqrt(F^3 / J)
  *     acceleration and feed  R = F^2 / a

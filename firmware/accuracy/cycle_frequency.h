@@ -1,9 +1,10 @@
 /*
- * How often a controller must cycle so that the chords between its points stay within a tolerance of the curve.
+ * How often a controller must cycle so that the chords between its points stay within a tolerance
+ * of the curve.
  *
- * A controller moves in a straight line between the points of two cycles. On a circle of radius R the step H of one
- * cycle leaves the circle by the chord error. Above a certain frequency more cycles per second buy nothing.
- * Source: seed 000, equations (1) to (8), in units of mm and s.
+ * A controller moves in a straight line between the points of two cycles. On a circle of radius R
+ * the step H of one cycle leaves the circle by the chord error. Above a certain frequency more
+ * cycles per second buy nothing. Source: seed 000, equations (1) to (8), in units of mm and s.
  */
 #ifndef TAKT_ACCURACY_CYCLE_FREQUENCY_H
 #define TAKT_ACCURACY_CYCLE_FREQUENCY_H
@@ -13,7 +14,10 @@
 #define CYCLE_LIMIT_ACCELERATION 2U
 #define CYCLE_LIMIT_JERK         4U
 
-/* All above 0. MATHS_INFINITY: not limited; at least one of them must be finite, and feed or jerk if the other is. */
+/*
+ * All above 0. MATHS_INFINITY: not limited; at least one of them must be finite, and feed or jerk
+ * if the other is.
+ */
 struct cycle_limits {
     double feed_mm_s;
     double acceleration_mm_s2;
@@ -30,13 +34,21 @@ struct cycle_need {
 /* Step of one cycle. */
 double takt_cycle_step_mm(double feed_mm_s, double frequency_hz);
 
-/* Largest distance of a chord of that length from its circle; a chord cannot be longer than the diameter. */
+/*
+ * Largest distance of a chord of that length from its circle; a chord cannot be longer than the
+ * diameter.
+ */
 double takt_cycle_chord_error_mm(double radius_mm, double step_mm);
 
-/* Frequency at which the chord error is the tolerance; 0 for circles no larger than the tolerance. */
+/*
+ * Frequency at which the chord error is the tolerance; 0 for circles no larger than the tolerance.
+ */
 double takt_cycle_frequency_hz(double radius_mm, double feed_mm_s, double tolerance_mm);
 
-/* The same turned round: highest feed at a frequency. MATHS_INFINITY for circles no larger than the tolerance. */
+/*
+ * The same turned round: highest feed at a frequency. MATHS_INFINITY for circles no larger than the
+ * tolerance.
+ */
 double takt_cycle_feed_chord_mm_s(double radius_mm, double frequency_hz, double tolerance_mm);
 
 /* Feed at which a circle uses up one limit. */
@@ -47,7 +59,10 @@ double takt_cycle_feed_jerk_mm_s(double radius_mm, double jerk_mm_s3);
 double takt_cycle_feed_allowed_mm_s(const struct cycle_limits *limits, double radius_mm,
                                     unsigned *governing);
 
-/* The highest frequency that any circle larger than the tolerance needs, driven as fast as the limits allow. */
+/*
+ * The highest frequency that any circle larger than the tolerance needs, driven as fast as the
+ * limits allow.
+ */
 void takt_cycle_frequency_find(const struct cycle_limits *limits, double tolerance_mm,
                                struct cycle_need *need);
 

@@ -1,6 +1,10 @@
-/* The interpolator that follows from a machine: how long its words are, and how far an angle reaches. */
+/*
+ * The interpolator that follows from a machine: how long its words are, and how far an angle
+ * reaches.
+ */
 #include "controller/controller.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 
 /* V_max: of two linear axes at once, each as fast as the fastest. */
@@ -20,6 +24,7 @@ void takt_controller_interpolator_config(const struct machine *machine,
             velocity_mm_s = maths_max(velocity_mm_s, axis->max_velocity_mm_s);
         }
     }
+    TAKT_ASSERT(range_mm >= 0.0 && velocity_mm_s >= 0.0 && machine->resolution_per_mm > 0.0);
     *config = (struct interpolator_config){
         .kind = (enum interpolator_kind)machine->interpolator,
         .end_shift = machine->interpolator_end_shift,

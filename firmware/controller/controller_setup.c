@@ -1,6 +1,10 @@
-/* What the rooms of the controller are set up with: limits to plan by, and what a program is read by, of a machine. */
+/*
+ * What the rooms of the controller are set up with: limits to plan by, and what a program is read
+ * by, of a machine.
+ */
 #include "controller/controller.h"
 
+#include "base/assert.h"
 #include <string.h>
 
 void takt_controller_plan_limits(const struct machine *machine, struct plan_limits *limits)
@@ -10,6 +14,7 @@ void takt_controller_plan_limits(const struct machine *machine, struct plan_limi
     limits->cycle_s = machine_cycle_s(machine);
     limits->profile = (enum ramp_profile)machine->profile;
     limits->landing = (enum landing)machine->landing;
+    TAKT_ASSERT(limits->cycle_s > 0.0 && machine->resolution_per_mm > 0.0);
     limits->chord_error_max_mm = 1.0 / machine->resolution_per_mm;
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] = machine->axis[i].max_velocity_mm_s;

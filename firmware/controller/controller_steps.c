@@ -1,5 +1,6 @@
 #include "controller/controller_steps.h"
 
+#include "base/assert.h"
 #include <string.h>
 
 static void set_config(struct steps_config *config, const struct machine *machine)
@@ -11,6 +12,7 @@ static void set_config(struct steps_config *config, const struct machine *machin
         const struct machine_axis *axis = &machine->axis[i];
 
         if (machine_axis_is_stepped(axis)) {
+            TAKT_ASSERT(axis->steps_per_mm > 0.0 && axis->step_rate_max_hz > 0.0);
             config->axes |= 1U << i;
             config->axis[i] = (struct steps_config_axis){
                 .steps_per_mm = axis->steps_per_mm,

@@ -32,6 +32,7 @@ enum takt_error takt_tool_changer_cycle(struct tool_changer *t, bool stands_at_c
         t->waited = 0;
         return TAKT_OK;
     }
+    TAKT_ASSERT(t->phase <= CHANGER_DONE);
     t->phase = next_phase(t->phase, is_changed);
     return t->waited++ < t->most ? TAKT_OK : TAKT_ERROR_TOOL_CHANGE_SLOW;
 }

@@ -1,6 +1,6 @@
 /*
- * With a piece from c0 to c3 of a uniform cubic B-spline its derivatives by the piece are x' = (c2 - c0)/2 and
- * x'' = c0 - 2 c1 + c2 where it begins.
+ * With a piece from c0 to c3 of a uniform cubic B-spline its derivatives by the piece are x' = (c2
+ * - c0)/2 and x'' = c0 - 2 c1 + c2 where it begins.
  */
 #include "motion/hold_pieces.h"
 
@@ -15,13 +15,19 @@
 #define READ_MAX  4
 #define PARTS_MAX 8
 
-/* One of so many parts of an arc is computed, the others are turned on from it: by rounding they come to be 1e-6 too long. */
+/*
+ * One of so many parts of an arc is computed, the others are turned on from it: by rounding they
+ * come to be 1e-6 too long.
+ */
 #define COMPUTED_EVERY 16
 
 /* Rounding. */
 #define TOP_SLACK 1e-5f
 
-/* A part is this part of the way in which the axes come to rest, or of an arc's radius where that is less: README.md. */
+/*
+ * A part is this part of the way in which the axes come to rest, or of an arc's radius where that
+ * is less: README.md.
+ */
 #define PART_OF_WAY    0.5
 #define PART_OF_RADIUS 0.08
 
@@ -102,8 +108,9 @@ static bool goes_on(const struct hold *h, const struct path *path, uint32_t bloc
 /* -- of a line or an arc -- */
 
 /*
- * Where part k begins: s dx/ds, and s^2 d2x/ds2, on a circle about c that turns by w on a part w^2 (c - x). They stand where
- * that part will, and the second one is that of the end of the part before.
+ * Where part k begins: s dx/ds, and s^2 d2x/ds2, on a circle about c that turns by w on a part w^2
+ * (c - x). They stand where that part will, and the second one is that of the end of the part
+ * before.
  */
 static void compute_start(struct hold *h, struct path *path, uint32_t k)
 {
@@ -165,7 +172,10 @@ static void read_part(struct hold *h, struct path *path)
     memcpy(p + 2 * (size_t)h->axes, piece_at(h, h->end + 1) + h->axes, h->axes * sizeof(float));
 }
 
-/* The way to rest at this feed, mm a cycle: v/2 (v/a + a/J) of the axis that takes longest, a^2 <= v J. */
+/*
+ * The way to rest at this feed, mm a cycle: v/2 (v/a + a/J) of the axis that takes longest, a^2 <=
+ * v J.
+ */
 static double way_to_rest(const struct hold *h, const struct curve *c, double feed_mm)
 {
     double way = 0.0;
@@ -207,9 +217,10 @@ static void set_turn(struct hold *h, const struct curve *c, double length_mm)
 }
 
 /*
- * A part s of a circle that turns by w: its second derivative is w^3 s/8 at most off the line between those at both ends, its
- * third one w^3 s/2 off their difference. Where the radius changes by d over an angle t it moves outwards too, 2 w^2 d/t and
- * 3 w^3 d/t, and turns by up to d/2R more or less, w^2 d and 3/2 w^3 d.
+ * A part s of a circle that turns by w: its second derivative is w^3 s/8 at most off the line
+ * between those at both ends, its third one w^3 s/2 off their difference. Where the radius changes
+ * by d over an angle t it moves outwards too, 2 w^2 d/t and 3 w^3 d/t, and turns by up to d/2R more
+ * or less, w^2 d and 3/2 w^3 d.
  */
 static void set_off(struct hold *h, const struct curve *c, double length_mm, double turn)
 {
@@ -304,6 +315,18 @@ bool takt_hold_prepare(struct hold *h, const struct plan_limits *limits, float *
     return room >= HOLD_PIECES_MIN;
 }
 
+/*
+ * Does the curve go on with pieces as long as the first, or end there? Where it stands before it
+ * begins they are not.
+ */
+static bool is_even(const struct hold *h, const struct path *path)
+{
+    const uint32_t first = path->first;
+
+    return path_at(path, first)->end == JUNCTION_STOP ||
+           (first + 1 != path->closed && length_of(path, first + 1) == h->length);
+}
+
 static bool begin(struct hold *h, struct path *path, double way)
 {
     h->smooth = path_at(path, path->first)->smooth;
@@ -311,9 +334,8 @@ static bool begin(struct hold *h, struct path *path, double way)
     h->whole = false;
     h->off_second = 0.0f;
     h->off_third = 0.0f;
-    if (h->smooth) {
-        h->length = length_of(path, path->first);
-    } else if (!begin_parts(h, path, way)) {
+    h->length = h->smooth ? length_of(path, path->first) : 0.0;
+    if (h->smooth ? !is_even(h, path) : !begin_parts(h, path, way)) {
         return false;
     }
     TAKT_ASSERT(h->length > 0.0);

@@ -1,5 +1,6 @@
 #include "panel/upload.h"
 
+#include "base/assert.h"
 #include "base/crc32.h"
 #include "modbus/crc.h"
 
@@ -35,6 +36,7 @@ bool takt_panel_upload_stream(struct panel_upload *upload, const struct panel_st
 
 uint32_t takt_panel_upload_room(const struct panel_upload *upload, const struct panel_store *store)
 {
+    TAKT_ASSERT(upload->received <= upload->size);
     const uint32_t left = upload->size - upload->received;
     const uint32_t room = store->room == NULL ? left : store->room(store->context);
 
@@ -47,9 +49,13 @@ static bool fits(const struct panel_upload *upload, uint32_t offset, size_t leng
            length <= upload->size - offset;
 }
 
-/* The last byte has come. Nobody commits a stream: it tells by itself whether it is what was announced. */
+/*
+ * The last byte has come. Nobody commits a stream: it tells by itself whether it is what was
+ * announced.
+ */
 static void complete(struct panel_upload *upload, const struct panel_store *store)
 {
+    TAKT_ASSERT(upload->state == PANEL_UPLOAD_OPEN && upload->received == upload->size);
     upload->state = PANEL_UPLOAD_WHOLE;
     if (upload->is_stream)
         store->end_stream(store->context, takt_panel_upload_is_right(upload));

@@ -1,5 +1,6 @@
 /*
- * Does a compiled program belong to this machine and this text of a program? Asked before anything of it moves.
+ * Does a compiled program belong to this machine and this text of a program? Asked before anything
+ * of it moves.
  */
 #ifndef TAKT_REPLAY_FIT_H
 #define TAKT_REPLAY_FIT_H

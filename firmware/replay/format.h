@@ -8,12 +8,13 @@
  *     more      ends (1) of blocks where the next interval begins
  *     end       of the program
  *
- * A record's CRC goes on from that of the record before, so that none can be missing. Positions are whole multiples of the
- * quantum, 2^-quantum_bits mm. A section's curve is a uniform cubic B-spline whose first three control points are the start;
- * interval i adds control point i + 3.
+ * A record's CRC goes on from that of the record before, so that none can be missing. Positions are
+ * whole multiples of the quantum, 2^-quantum_bits mm. A section's curve is a uniform cubic B-spline
+ * whose first three control points are the start; interval i adds control point i + 3.
  *
- * The ends of blocks are bits, the lowest of a byte first: k (REPLAY_RICE_BITS), then of every interval how many end in it,
- * n: n / 2^k ones, a zero, n mod 2^k in k bits; and where, in parts of the interval, less one:
+ * The ends of blocks are bits, the lowest of a byte first: k (REPLAY_RICE_BITS), then of every
+ * interval how many end in it, n: n / 2^k ones, a zero, n mod 2^k in k bits; and where, in parts of
+ * the interval, less one:
  *
  *     n = 1        of 256
  *     n = 2        both of 32

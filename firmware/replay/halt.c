@@ -66,7 +66,10 @@ static bool fits(const struct rate *r, double second, double way)
     return here + takt_halt_way(&next) <= way;
 }
 
-/* The largest second difference up to most from which the rest of the way is enough; no less than braking to the rate 0 needs. */
+/*
+ * The largest second difference up to most from which the rest of the way is enough; no less than
+ * braking to the rate 0 needs.
+ */
 static double find_second(const struct rate *r, double most, double way)
 {
     double low = takt_rate_second(r, 0.0, second_max(r), change_max(r));
@@ -87,7 +90,9 @@ static double find_second(const struct rate *r, double most, double way)
     return low;
 }
 
-/* The rate is so near to what it is to be that one cycle leads there, from where the way is enough. */
+/*
+ * The rate is so near to what it is to be that one cycle leads there, from where the way is enough.
+ */
 static bool settles(struct rate *r, double to, double way, double *here)
 {
     const double m = second_max(r);
@@ -104,7 +109,8 @@ static bool settles(struct rate *r, double to, double way, double *here)
 }
 
 /*
- * A landing: u(t) = r t + c t^2 / 2 + a3 t^3 + a4 t^4 + a5 t^5 is at the end of the way w, at rest, after n cycles:
+ * A landing: u(t) = r t + c t^2 / 2 + a3 t^3 + a4 t^4 + a5 t^5 is at the end of the way w, at rest,
+ * after n cycles:
  *
  *     a3 = (20 w - 12 r n - 3 c n^2) / 2 n^3,  a4 = (-30 w + 16 r n + 3 c n^2) / 2 n^4,  a5 = (12 w - 6 r n - c n^2) / 2 n^5
  */
@@ -136,8 +142,9 @@ static double curve_at(const struct halt_curve *l, struct rate *r, double t)
 }
 
 /*
- * u"' = 6 a3 + 24 a4 t + 60 a5 t^2 is within the bounds of rate.h and never negative, so that the rate and its change only
- * fall, in size, to 0. Where it is least or most: at the ends, and at t = -a4 / 5 a5, by -12 a4^2 / 5 a5.
+ * u"' = 6 a3 + 24 a4 t + 60 a5 t^2 is within the bounds of rate.h and never negative, so that the
+ * rate and its change only fall, in size, to 0. Where it is least or most: at the ends, and at t =
+ * -a4 / 5 a5, by -12 a4^2 / 5 a5.
  */
 static bool is_good(const struct halt_curve *l, const struct rate *r, double n)
 {
@@ -155,8 +162,9 @@ static bool is_good(const struct halt_curve *l, const struct rate *r, double n)
 }
 
 /*
- * Cycles of a landing that begins at rest, whose rate is 15 w / 8 n at most, its change 10 w / (sqrt 3 n^2) and that one's
- * change 60 w / n^3. 0: so many that it had better be driven as ordered.
+ * Cycles of a landing that begins at rest, whose rate is 15 w / 8 n at most, its change 10 w /
+ * (sqrt 3 n^2) and that one's change 60 w / n^3. 0: so many that it had better be driven as
+ * ordered.
  */
 static double hop_cycles(const struct rate *r, double to, double way)
 {
@@ -168,7 +176,10 @@ static double hop_cycles(const struct rate *r, double to, double way)
     return n <= HOP_MAX ? maths_max(n, 1.0) : 0.0;
 }
 
-/* For one that ends braking, where the way is M t^3 / 6 and the rate M t^2 / 2 of the time left. 0: not yet. */
+/*
+ * For one that ends braking, where the way is M t^3 / 6 and the rate M t^2 / 2 of the time left. 0:
+ * not yet.
+ */
 static double brake_cycles(const struct rate *r, double way)
 {
     const double n =
@@ -183,8 +194,9 @@ static double brake_cycles(const struct rate *r, double way)
 }
 
 /*
- * May the rest of the way be led in one cycle? The ways of the cycles before were r - c / 2 and c less, but for the last
- * change of the change, and those behind it are 0: third differences within the room, which is 0.4 of what there is.
+ * May the rest of the way be led in one cycle? The ways of the cycles before were r - c / 2 and c
+ * less, but for the last change of the change, and those behind it are 0: third differences within
+ * the room, which is 0.4 of what there is.
  */
 static bool is_at_end(const struct rate *r, double way)
 {

@@ -1,7 +1,9 @@
 /*
- * Reads a compiled program as its bytes come, a record at a time, into rings that the control cycle empties.
+ * Reads a compiled program as its bytes come, a record at a time, into rings that the control cycle
+ * empties.
  *
- * Only the background writes the rings and what counts what has come; only the cycle moves what counts what is taken.
+ * Only the background writes the rings and what counts what has come; only the cycle moves what
+ * counts what is taken.
  */
 #ifndef TAKT_REPLAY_INTAKE_H
 #define TAKT_REPLAY_INTAKE_H
@@ -17,7 +19,10 @@
 #define INTAKE_ENDS_MAX      512
 #define INTAKE_SECTIONS_MAX  8
 
-/* Where the bytes come from, in order. Returns how many there were; fewer than asked for: no more at the moment. */
+/*
+ * Where the bytes come from, in order. Returns how many there were; fewer than asked for: no more
+ * at the moment.
+ */
 struct replay_source {
     void *context;
     size_t (*read)(void *context, uint8_t *bytes, size_t size);
@@ -45,8 +50,8 @@ struct intake {
     uint32_t intervals_came, intervals_taken;
     uint32_t ends_came, ends_taken;
     uint32_t sections_came, sections_taken;
-    uint64_t
-        place; /* of the next interval that comes, and of the last end, in parts from the section's start */
+    /* of the next interval that comes, and of the last end, in parts from the section's start */
+    uint64_t place;
     uint64_t last_end;
     int16_t third[INTAKE_INTERVALS_MAX][AXIS_LINEAR_COUNT];
     uint32_t end[INTAKE_ENDS_MAX]; /* behind the end before it */

@@ -52,8 +52,8 @@ static double room_at(const struct rate_limits *l, double rate)
 }
 
 /*
- * The change of the next cycle from which the way is still enough to come to rest, by room every cycle: with s = n room the
- * cycles to come lead (this one's mean) + s^2 / (2 room).
+ * The change of the next cycle from which the way is still enough to come to rest, by room every
+ * cycle: with s = n room the cycles to come lead (this one's mean) + s^2 / (2 room).
  */
 static double landing_change(double way, double change, double room)
 {

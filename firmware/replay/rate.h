@@ -1,6 +1,6 @@
 /*
- * The rate at which a compiled curve is passed: 1 as compiled, 0 at rest, changed so that no axis leaves its limits
- * wherever on the curve that happens.
+ * The rate at which a compiled curve is passed: 1 as compiled, 0 at rest, changed so that no axis
+ * leaves its limits wherever on the curve that happens.
  *
  * With the place u(t), u' = r, an axis at x(u) has (derivatives of x by u)
  *
@@ -15,8 +15,8 @@
  *
  *     L = min(A / V, J / (5 A), sqrt(J / (5 V)))          over all axes,
  *
- * and from anywhere within them r can be brought to rest without leaving them: along |r'| = L (1 - k r^2) it is
- * |r"| = 2 L^2 k r (1 - k r^2) <= 2 L^2 (1 - k r^3).
+ * and from anywhere within them r can be brought to rest without leaving them: along |r'| = L (1 -
+ * k r^2) it is |r"| = 2 L^2 k r (1 - k r^2) <= 2 L^2 (1 - k r^3).
  */
 #ifndef TAKT_REPLAY_RATE_H
 #define TAKT_REPLAY_RATE_H
@@ -43,16 +43,27 @@ void takt_rate_init(struct rate *r, const struct plan_limits *limits, double kep
 /* The axes stand where nothing of the curve moves: the rate may be anything at once. */
 void takt_rate_set(struct rate *r, double to);
 
-/* One cycle towards the rate to, 0 ... 1. Returns how far on the curve it leads, in cycles of the curve. */
+/*
+ * One cycle towards the rate to, 0 ... 1. Returns how far on the curve it leads, in cycles of the
+ * curve.
+ */
 double takt_rate_step(struct rate *r, double to);
 
-/* How much the change changes in a cycle on the way to the rate to: by room at most, and to a change of most at most. */
+/*
+ * How much the change changes in a cycle on the way to the rate to: by room at most, and to a
+ * change of most at most.
+ */
 double takt_rate_second(const struct rate *r, double to, double room, double most);
 
-/* How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most. */
+/*
+ * How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most.
+ */
 double takt_rate_brake_cycles(const struct rate *r);
 
-/* The highest rate, up to 1, from which it comes to rest within this many cycles of the curve, 500 or more. */
+/*
+ * The highest rate, up to 1, from which it comes to rest within this many cycles of the curve, 500
+ * or more.
+ */
 double takt_rate_highest(const struct rate *r, double cycles);
 
 /* Does it stand? */

@@ -204,7 +204,10 @@ static double way_to(const struct replay *r, uint64_t end)
     return ((double)end / REPLAY_END_PARTS - (double)r->interval - r->part) / r->step;
 }
 
-/* The first end of a block, but the section's, that can be braked for: it is known if its intervals have come. */
+/*
+ * The first end of a block, but the section's, that can be braked for: it is known if its intervals
+ * have come.
+ */
 static void find_stop(struct replay *r)
 {
     const struct intake *s = r->intake;
@@ -228,7 +231,7 @@ static void find_stop(struct replay *r)
     }
 }
 
-/* The cycle leads to the stop or towards it; without one, as slowly as leaves the next one possible. */
+/* The cycle leads to the stop or towards it; without one, as slowly as the next one needs. */
 static double step_to_stop(struct replay *r, double rate)
 {
     const double to = maths_min(rate, HALT_RATE);
@@ -254,7 +257,10 @@ static void stand_at_stop(struct replay *r)
     r->part = (double)r->stop_end / REPLAY_END_PARTS - (double)r->interval;
 }
 
-/* Nothing of the curve moves where a section begins: at once at the rate, if the first stop can then be braked for. */
+/*
+ * Nothing of the curve moves where a section begins: at once at the rate, if the first stop can
+ * then be braked for.
+ */
 static void begin_rate(struct replay *r, double rate, bool single_block)
 {
     takt_rate_set(&r->rate, single_block ? maths_min(rate, HALT_RATE) : rate);
@@ -266,7 +272,8 @@ static void begin_rate(struct replay *r, double rate, bool single_block)
 /* -- the cycle -- */
 
 /*
- * True: the section's end has been reached. Where nothing more is known, in spite of is_starving, the axes stand at once.
+ * True: the section's end has been reached. Where nothing more is known, in spite of is_starving,
+ * the axes stand at once.
  */
 static bool advance(struct replay *r, double rate, bool single_block)
 {
@@ -294,51 +301,64 @@ static bool advance(struct replay *r, double rate, bool single_block)
     return false;
 }
 
-/* The pieces of the oldest motion but the one that ends it. False: the path does not know them all yet. */
-static bool pass_pieces(struct motion *m)
+/* Is what follows the oldest block no motion, or nothing? Then the program is another one. */
+static bool is_cut_short(const struct path *p)
 {
-    for (unsigned i = 0; i < PASS_MAX; i++) {
-        if (!path_at(m->path, m->path->first)->continues) {
-            return true;
-        }
-        if (m->path->first + 1 == m->path->closed) {
+    const uint32_t next = p->first + 1;
+
+    return next == p->closed ? p->finished : !path_at(p, next)->motion;
+}
+
+/* Passes a block if a motion is known behind it, and not too many have been passed yet. */
+static bool pass_one(struct motion *m, unsigned *left)
+{
+    const uint32_t next = m->path->first + 1;
+
+    if (*left == 0 || next == m->path->closed || !path_at(m->path, next)->motion) {
+        return false;
+    }
+    takt_handover_pass_block(m);
+    --*left;
+    return true;
+}
+
+/* The pieces of the oldest motion but the one that ends it. False: some are left. */
+static bool pass_pieces(struct motion *m, unsigned *left)
+{
+    while (path_at(m->path, m->path->first)->continues) {
+        if (!pass_one(m, left)) {
             return false;
         }
-        takt_handover_pass_block(m);
     }
-    return false;
+    return true;
 }
 
 /*
- * Blocks whose ends have been passed, as far as the path knows what follows; at the section's end all but its last piece. False:
- * some are left.
+ * Blocks whose ends have been passed, as far as the path knows what follows; at the section's end
+ * all but its last piece. False: some are left.
  */
 static bool pass_blocks(struct replay *r, struct motion *m, bool ended)
 {
     const double here = ((double)r->interval + r->part) * REPLAY_END_PARTS;
+    unsigned left = PASS_MAX;
 
-    if (!r->has_end) { /* of a block longer than the ring of intervals the end comes later than the begin */
+    if (!r->has_end) { /* of a block longer than the ring of intervals the end comes later */
         take_end(r);
     }
-    for (unsigned i = 0; i < PASS_MAX; i++) {
-        if (!ended &&
-            (r->blocks + 1 >= r->section.blocks || !r->has_end || here < (double)r->end)) {
-            return true;
-        }
-        if (!pass_pieces(m)) {
+    while (ended || (r->blocks + 1 < r->section.blocks && r->has_end && here >= (double)r->end)) {
+        if (!pass_pieces(m, &left)) {
             return false;
         }
         if (r->blocks + 1 >= r->section.blocks) {
             return true;
         }
-        if (m->path->first + 1 == m->path->closed) {
+        if (!pass_one(m, &left)) {
             return false;
         }
-        takt_handover_pass_block(m);
         r->blocks++;
         take_end(r);
     }
-    return false;
+    return true;
 }
 
 static double distance(const struct point *a, const struct point *b)
@@ -351,7 +371,10 @@ static double distance(const struct point *a, const struct point *b)
     return maths_sqrt(sum);
 }
 
-/* All blocks have been passed but the last one, and it ends where the curve does, but for half a quantum of each axis. */
+/*
+ * All blocks have been passed but the last one, and it ends where the curve does, but for half a
+ * quantum of each axis.
+ */
 static bool ends_well(const struct replay *r, const struct motion *m)
 {
     struct point at = m->at;
@@ -377,12 +400,6 @@ static bool is_over(const struct replay *r)
     return r->interval == r->section.intervals;
 }
 
-/* Will the path never know more? */
-static bool is_all_known(const struct path *p)
-{
-    return p->finished && p->first + 1 == p->closed;
-}
-
 /* At the end of the curve the axes stand until all blocks have been passed. */
 static void drive(struct replay *r, struct motion *m, double rate, bool single_block,
                   struct cycle_record *record)
@@ -390,7 +407,7 @@ static void drive(struct replay *r, struct motion *m, double rate, bool single_b
     const struct point before = m->at;
     const bool over = is_over(r) || advance(r, rate, single_block);
     const bool passed = r->stop == REPLAY_STOP_REACHED || pass_blocks(r, m, over);
-    const bool ended = over && (passed || is_all_known(m->path));
+    const bool ended = over && (passed || is_cut_short(m->path));
     struct point at = m->at;
 
     r->part = over ? 1.0 : r->part;
@@ -398,6 +415,10 @@ static void drive(struct replay *r, struct motion *m, double rate, bool single_b
         end_section(r, m, &at);
     } else {
         point_at(r, &at);
+    }
+    if (over && !ended) {
+        takt_rate_set(&r->rate, 0.0);
+        r->waits = true;
     }
     takt_handover_add_cycle(m, &at, distance(&before, &at) / m->cycle_s, ended, record);
     record->override_percent = r->rate.now * (double)r->intake->header.ceiling_percent;
@@ -413,7 +434,7 @@ static void stand(struct motion *m, struct cycle_record *record)
     takt_handover_add_cycle(m, &at, 0.0, false, record);
 }
 
-/* A cycle at the end of a single block, from which the operator may go on after it has been told. */
+/* A cycle at the end of a single block, from which the operator may go on once it is told. */
 static bool stands_at_stop(struct replay *r, struct motion *m, double rate,
                            const struct motion_operator *wanted, struct cycle_record *record)
 {

@@ -1,10 +1,11 @@
 /*
- * Replays a compiled program: setpoints out of its curve instead of out of the planner, in the same control cycle.
+ * Replays a compiled program: setpoints out of its curve instead of out of the planner, in the same
+ * control cycle.
  *
  *     intake (background) -> sections, intervals, block ends -> takt_replay_cycle -> setpoint
  *
- * struct motion hands over every motion (motion/handover.h) and does what happens at rest itself. The place on the curve
- * moves at the rate that rate.h allows.
+ * struct motion hands over every motion (motion/handover.h) and does what happens at rest itself.
+ * The place on the curve moves at the rate that rate.h allows.
  */
 #ifndef TAKT_REPLAY_REPLAY_H
 #define TAKT_REPLAY_REPLAY_H
@@ -63,7 +64,10 @@ enum replay_result {
 /* intake: the caller's, for as long as it replays; no matter what is in it. */
 void takt_replay_init(struct replay *r, struct intake *intake, const struct replay_source *source);
 
-/* Background: a move as it goes onto the path, of which the blocks alone are needed, not the feed or the rounding. */
+/*
+ * Background: a move as it goes onto the path, of which the blocks alone are needed, not the feed
+ * or the rounding.
+ */
 void takt_replay_prepare(struct move *move);
 
 /* Background, as often as it likes. */

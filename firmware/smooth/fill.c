@@ -1,5 +1,6 @@
 /*
- * The window is filled with samples along the route, as far as that is known: at an interval that fits the axes that move on it.
+ * The window is filled with samples along the route, as far as that is known: at an interval that
+ * fits the axes that move on it.
  */
 #include "smooth/fill.h"
 
@@ -11,10 +12,16 @@
 /* A chain that goes on behind what is known is expected to be so many times as long: README.md. */
 #define EXPECTED 4.0
 
+/* So short that changes of rate are rounded over as little as they may be. */
+#define WAY_LEAST_MM 1e-9
+
+/* From where the axes rest. */
 static struct verifier_way way_of(const struct smooth *s)
 {
     const struct route *r = &s->route;
-    const double known_mm = takt_route_end(r) - route_element(r, r->first)->start_mm;
+    const double start_mm =
+        s->window.count > 0 ? s->window.at_mm[0] : route_element(r, r->first)->start_mm;
+    const double known_mm = maths_max(takt_route_end(r) - start_mm, WAY_LEAST_MM);
 
     return (struct verifier_way){s->finished ? known_mm : EXPECTED * known_mm, s->finished};
 }
@@ -95,7 +102,10 @@ static bool is_all_known(const struct smooth *s)
     return s->finished || !takt_route_has_room(&s->route);
 }
 
-/* The route has gone on since: samples that were slow before its end only, or that end itself, are taken anew. */
+/*
+ * The route has gone on since: samples that were slow before its end only, or that end itself, are
+ * taken anew.
+ */
 static void forget_end(struct smooth *s)
 {
     struct window *w = &s->window;
@@ -112,8 +122,10 @@ static void forget_end(struct smooth *s)
 bool takt_fill_fits(const struct smooth *s, unsigned axes)
 {
     const struct verifier_way any = {MATHS_INFINITY, false};
+    const struct verifier_way short_one = {WAY_LEAST_MM, false};
     struct verifier_change before;
     struct verifier_change after;
+    struct verifier_change least;
 
     if (s->window.count == 0 || (axes & ~s->route.moved) == 0) {
         return true;
@@ -123,11 +135,16 @@ bool takt_fill_fits(const struct smooth *s, unsigned axes)
     axes |= s->route.moved;
     find_change(s, s->route.moved, interval_s, &any, &before);
     find_change(s, axes, interval_s, &any, &after);
+    find_change(s, axes, interval_s, &short_one, &least);
     return find_interval(s, axes) <= interval_s && after.by >= before.by &&
-           after.rounding_s <= before.rounding_s;
+           after.rounding_s <= before.rounding_s &&
+           (s->change.rounding_s >= before.rounding_s || least.rounding_s <= s->change.rounding_s);
 }
 
-/* Is the route still not known far enough for the place that was tried last? One that has been passed says nothing. */
+/*
+ * Is the route still not known far enough for the place that was tried last? One that has been
+ * passed says nothing.
+ */
 static bool is_tried_in_vain(const struct smooth *s)
 {
     return !is_all_known(s) && s->tried >= s->route.first &&

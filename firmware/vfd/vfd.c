@@ -32,12 +32,14 @@ static void follow_ramp(struct vfd *v, double commanded_rpm)
 {
     const double most_rpm = v->config.ramp_rpm_s * seconds(v);
 
+    TAKT_ASSERT(most_rpm >= 0.0);
     v->ramp_rpm += maths_clamp(commanded_rpm - v->ramp_rpm, -most_rpm, most_rpm);
 }
 
 /* f = rpm pole pairs / 60 */
 static uint16_t frequency_of(const struct vfd *v, double rpm)
 {
+    TAKT_ASSERT(v->config.max_hz >= 0.0);
     const double hz = maths_min(maths_abs(rpm) * v->config.pole_pairs / 60.0, v->config.max_hz);
 
     return (uint16_t)maths_min(takt_maths_round(hz / HZ_PER_COUNT), WORD_MAX);
@@ -58,6 +60,7 @@ static void wanted_command(const struct vfd *v, double commanded_rpm, uint16_t w
 
 static double rpm_of(const struct vfd *v, uint16_t frequency)
 {
+    TAKT_ASSERT(v->config.pole_pairs > 0);
     return (double)frequency * HZ_PER_COUNT * 60.0 / v->config.pole_pairs;
 }
 
@@ -80,6 +83,7 @@ static void take_load(struct vfd *v, const uint16_t *word)
 
 static void take_answer(struct vfd *v, const uint16_t *word)
 {
+    TAKT_ASSERT(v->request != VFD_NOTHING);
     v->quiet_us = 0;
     v->heard = true;
     switch (v->request) {
@@ -123,6 +127,7 @@ static bool end_request(struct vfd *v, const struct registers_port *port)
 
 static void write_command(struct vfd *v, const struct registers_port *port, const uint16_t word[2])
 {
+    TAKT_ASSERT(v->request != VFD_WRITES_COMMAND);
     memcpy(v->command, word, sizeof v->command);
     v->is_written = false;
     v->request = VFD_WRITES_COMMAND;

@@ -1,9 +1,9 @@
 /*
- * The spindle behind a frequency converter with the registers of the Delta VFD-B and MS300 series: commanded speed in,
- * speed, load, trip and loss of the line out.
+ * The spindle behind a frequency converter with the registers of the Delta VFD-B and MS300 series:
+ * commanded speed in, speed, load, trip and loss of the line out.
  *
- * Called once a control cycle; it never waits. Requests follow each other as fast as the line answers: the command when it
- * has changed, else what the converter reports.
+ * Called once a control cycle; it never waits. Requests follow each other as fast as the line
+ * answers: the command when it has changed, else what the converter reports.
  */
 #ifndef TAKT_VFD_VFD_H
 #define TAKT_VFD_VFD_H
@@ -33,9 +33,12 @@
 
 #define VFD_ERROR_MASK 0x00FFU
 
-/* Bits of VFD_STATUS. Direction in bits 4 and 3: 00 forward, 01 from reverse to forward, 10 from forward to reverse,
- * 11 reverse: so bit 3 tells how it turns, bit 4 what is commanded. */
-#define VFD_RUNS             0x0003U /* bits 1 and 0: 00 stopped, 01 stopping, 10 standby, 11 running */
+/*
+ * Bits of VFD_STATUS. Direction in bits 4 and 3: 00 forward, 01 from reverse to forward, 10 from
+ * forward to reverse, 11 reverse: so bit 3 tells how it turns, bit 4 what is commanded.
+ */
+/* bits 1 and 0: 00 stopped, 01 stopping, 10 standby, 11 running */
+#define VFD_RUNS             0x0003U
 #define VFD_STOPS            0x0001U
 #define VFD_TURNS_REVERSE    0x0008U
 #define VFD_REVERSE_ORDERED  0x0010U
@@ -77,13 +80,15 @@ struct vfd {
 void takt_vfd_init(struct vfd *vfd, const struct vfd_config *config);
 
 /*
- * One control cycle. commanded_rpm: positive clockwise. The angle is the integral of the reported speed, no
- * measurement: threads need an encoder.
+ * One control cycle. commanded_rpm: positive clockwise. The angle is the integral of the reported
+ * speed, no measurement: threads need an encoder.
  */
 struct spindle_feedback takt_vfd_cycle(struct vfd *vfd, const struct registers_port *port,
                                        double commanded_rpm);
 
-/* Stops without the ramp of the commands, by the converter's own: STOP is the next that is written. */
+/*
+ * Stops without the ramp of the commands, by the converter's own: STOP is the next that is written.
+ */
 void takt_vfd_stop(struct vfd *vfd);
 /* It has been written, or the converter does not answer. */
 bool takt_vfd_is_stopped(const struct vfd *vfd);

@@ -145,7 +145,10 @@ static void test_a_curve_that_does_not_lead_to_the_end_is_told(void)
     TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_STRAYED, replay.alarm.code);
 }
 
-/* Forth and back in four blocks, of which the path knows three at first: cycles until the axes are at the end of all. */
+/*
+ * Forth and back in four blocks, of which the path knows three at first: cycles until the axes are
+ * at the end of all.
+ */
 static unsigned cycles_with_a_late_block(unsigned late)
 {
     const struct replay_source source = {.read = read_bytes};
@@ -191,6 +194,43 @@ static void test_a_block_that_the_path_does_not_know_yet_is_waited_for_at_the_en
     TEST_ASSERT_EQUAL(TAKT_OK, replay.alarm.code);
 }
 
+static double run_with_three_blocks(void (*what_follows)(void))
+{
+    begin_path();
+    push_line(1);
+    push_line(0);
+    push_line(1);
+    what_follows();
+    takt_path_finish(&path);
+    takt_path_go_on(&path);
+    takt_motion_build(&motion);
+    add_section_of(1, 4, KNOTS_BYTES);
+    return run_until_it_fails();
+}
+
+static void nothing(void)
+{
+}
+
+static void dwell(void)
+{
+    const struct move move = {.kind = MOVE_DWELL, .dwell_s = 1.0};
+
+    takt_path_push(&path, &move);
+}
+
+static void test_a_block_that_never_comes_is_told_at_the_end_of_the_curve(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(0, run_with_three_blocks(nothing));
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_STRAYED, replay.alarm.code);
+}
+
+static void test_what_follows_and_is_no_motion_is_told_at_the_end_of_the_curve(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(0, run_with_three_blocks(dwell));
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_STRAYED, replay.alarm.code);
+}
+
 static void test_a_damaged_record_moves_nothing(void)
 {
     add_section(1);
@@ -212,6 +252,8 @@ int main(void)
     RUN_TEST(test_a_section_of_another_block_moves_nothing);
     RUN_TEST(test_a_curve_that_does_not_lead_to_the_end_is_told);
     RUN_TEST(test_a_block_that_the_path_does_not_know_yet_is_waited_for_at_the_end_of_the_curve);
+    RUN_TEST(test_a_block_that_never_comes_is_told_at_the_end_of_the_curve);
+    RUN_TEST(test_what_follows_and_is_no_motion_is_told_at_the_end_of_the_curve);
     RUN_TEST(test_a_damaged_record_moves_nothing);
     RUN_TEST(test_a_record_that_is_longer_than_what_it_tells_moves_nothing);
     return UNITY_END();
