@@ -1,8 +1,8 @@
 /*
  * Contract of a CAN controller.
  *
- * Non-blocking on both sides. A port may be the embedded bus of the host, SocketCAN, a serial line or the
- * peripheral of a microcontroller; the firmware cannot tell.
+ * Non-blocking on both sides. A port may be the embedded bus of the host, SocketCAN, a serial line
+ * or the peripheral of a microcontroller; the firmware cannot tell.
  */
 #ifndef TAKT_HAL_CAN_H
 #define TAKT_HAL_CAN_H
@@ -11,8 +11,8 @@
 #include <stdint.h>
 
 /*
- * Bytes of the longest frame: 64 with CAN FD. A build for a controller that has classical CAN alone says 8, and has smaller
- * queues.
+ * Bytes of the longest frame: 64 with CAN FD. A build for a controller that has classical CAN alone
+ * says 8, and has smaller queues.
  */
 #ifndef CAN_DATA_MAX
 #define CAN_DATA_MAX 64
@@ -25,16 +25,17 @@
 #endif
 
 /*
- * Flag in an id: a remote frame, which asks for the frame of that identifier. It has no data; its length is that of
- * what it asks for. Whoever looks for an identifier by == never takes one for a frame with data.
+ * Flag in an id: a remote frame, which asks for the frame of that identifier. It has no data; its
+ * length is that of what it asks for. Whoever looks for an identifier by == never takes one for a
+ * frame with data.
  */
 #define CAN_REMOTE  0x8000U
 #define CAN_ID_MASK 0x07FFU
 
 struct can_frame {
     uint16_t id; /* 11 bits, and CAN_REMOTE */
-    uint8_t
-        length; /* 0 ... CAN_CLASSIC_MAX; of a port that speaks CAN FD also 12, 16, 20, 24, 32, 48, 64 */
+    /* 0 ... CAN_CLASSIC_MAX; of a port that speaks CAN FD also 12, 16, 20, 24, 32, 48, 64 */
+    uint8_t length;
     uint8_t data[CAN_DATA_MAX];
 };
 
@@ -56,21 +57,27 @@ static inline unsigned can_rank(uint16_t id)
 }
 
 /*
- * All data frames of a port are of one kind: classical, or CAN FD with the data at the higher rate. Remote frames are always
- * classical.
+ * All data frames of a port are of one kind: classical, or CAN FD with the data at the higher rate.
+ * Remote frames are always classical.
  */
 struct can_port {
-    /* Queues a frame for sending. False: no room; the frame is not sent and the caller decides what that means.
-     * Must not wait. */
+    /*
+     * Queues a frame for sending. False: no room; the frame is not sent and the caller decides what
+     * that means. Must not wait.
+     */
     bool (*send)(void *context, const struct can_frame *frame);
-    /* Takes the oldest received frame. False: none. Must not wait. A port of a master need not receive remote frames. */
+    /*
+     * Takes the oldest received frame. False: none. Must not wait. A port of a master need not
+     * receive remote frames.
+     */
     bool (*receive)(void *context, struct can_frame *frame);
     void *context; /* owned by whoever made the port */
 };
 
 /*
- * The buses of a machine, by their index: 0 is can0, 1 is can1. Ports of buses on which the machine has no node are not
- * called and may be zeros. A frame goes to the port of its bus alone, and nothing is said of an order between buses.
+ * The buses of a machine, by their index: 0 is can0, 1 is can1. Ports of buses on which the machine
+ * has no node are not called and may be zeros. A frame goes to the port of its bus alone, and
+ * nothing is said of an order between buses.
  */
 struct can_buses {
     struct can_port port[CAN_BUSES_MAX];

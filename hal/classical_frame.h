@@ -1,5 +1,6 @@
 /*
- * A classical frame as it travels between processors: as long in every build, whatever the longest frame of a port is.
+ * A classical frame as it travels between processors: as long in every build, whatever the longest
+ * frame of a port is.
  */
 #ifndef TAKT_HAL_CLASSICAL_FRAME_H
 #define TAKT_HAL_CLASSICAL_FRAME_H

@@ -1,6 +1,6 @@
 /*
- * What a control cycle is told of the world: passed to takt_controller_cycle, never asked for. So a run is repeated exactly
- * by giving it the same inputs.
+ * What a control cycle is told of the world: passed to takt_controller_cycle, never asked for. So a
+ * run is repeated exactly by giving it the same inputs.
  */
 #ifndef TAKT_HAL_INPUTS_H
 #define TAKT_HAL_INPUTS_H

@@ -1,9 +1,10 @@
 /*
  * Contract of what a drive moves: power stage, encoder and inputs of one motor.
  *
- * A torque is told by the acceleration that it gives the axis without friction, positions by what the encoder says, both in
- * mm (rotary: rad) of the axis; a port knows lead, inertia and the motor's torque for a current. Moments between two calls
- * are those of hardware: the encoder is latched where a switch or the index pulse truly is.
+ * A torque is told by the acceleration that it gives the axis without friction, positions by what
+ * the encoder says, both in mm (rotary: rad) of the axis; a port knows lead, inertia and the
+ * motor's torque for a current. Moments between two calls are those of hardware: the encoder is
+ * latched where a switch or the index pulse truly is.
  */
 #ifndef TAKT_HAL_MOTOR_H
 #define TAKT_HAL_MOTOR_H
@@ -33,7 +34,10 @@ struct motor_sense {
 };
 
 struct motor_port {
-    /* For step_s from now on the motor has the torque; then: what the encoder says. May wait so long. */
+    /*
+     * For step_s from now on the motor has the torque; then: what the encoder says. May wait so
+     * long.
+     */
     double (*turn)(void *context, double torque_mm_s2, double step_s);
     /* The rest, once after the steps of a cycle of cycle_ns; 0: at power-on, or between cycles. */
     void (*sense)(void *context, uint32_t cycle_ns, struct motor_sense *sense);

@@ -1,6 +1,6 @@
 /*
- * What the firmware asks of the machine beside the axes: the state of the outputs after each control cycle. Whoever
- * runs the cycle carries them to the spindle drive, valves and lines.
+ * What the firmware asks of the machine beside the axes: the state of the outputs after each
+ * control cycle. Whoever runs the cycle carries them to the spindle drive, valves and lines.
  */
 #ifndef TAKT_HAL_OUTPUTS_H
 #define TAKT_HAL_OUTPUTS_H
@@ -13,9 +13,9 @@
 #define OUTPUTS_ANALOGUE_MAX 4
 
 struct outputs {
-    double
-        spindle_speed_rpm; /* commanded; positive clockwise (M3), negative counter-clockwise, 0 off */
-    bool spindle_orient;   /* M19: hold spindle_angle_rad */
+    /* commanded; positive clockwise (M3), negative counter-clockwise, 0 off */
+    double spindle_speed_rpm;
+    bool spindle_orient; /* M19: hold spindle_angle_rad */
     double spindle_angle_rad;
     bool mist;
     bool flood;

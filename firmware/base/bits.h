@@ -1,6 +1,6 @@
 /*
- * The 64 bits of a double (IEEE-754 binary64: sign, 11 bits exponent with bias 1023, 52 bits fraction).
- * Private to this room.
+ * The 64 bits of a double (IEEE-754 binary64: sign, 11 bits exponent with bias 1023, 52 bits
+ * fraction). Private to this room.
  */
 #ifndef TAKT_BASE_BITS_H
 #define TAKT_BASE_BITS_H

@@ -1,5 +1,6 @@
 /*
- * CRC-32 of ISO 3309 and IEEE 802.3 (polynomial 04C11DB7, reflected): what zip, PNG and Ethernet use.
+ * CRC-32 of ISO 3309 and IEEE 802.3 (polynomial 04C11DB7, reflected): what zip, PNG and Ethernet
+ * use.
  */
 #ifndef TAKT_BASE_CRC32_H
 #define TAKT_BASE_CRC32_H

@@ -51,8 +51,8 @@ static size_t scan_number(const char *text, size_t length, struct scientific *nu
 }
 
 /*
- * An unsigned integer of up to 40 limbs of 32 bits, the least significant first. inexact: a division has left a
- * remainder, the true value lies above by less than 1.
+ * An unsigned integer of up to 40 limbs of 32 bits, the least significant first. inexact: a
+ * division has left a remainder, the true value lies above by less than 1.
  */
 #define WIDE_LIMBS 40
 
@@ -117,8 +117,8 @@ static uint32_t wide_limb_from_top(const struct wide *w, int place)
 }
 
 /*
- * The 64 leading bits, the first of them 1. *top_bit: the number of the first bit, 0 for 2^0. *rest: whether
- * anything stands behind them.
+ * The 64 leading bits, the first of them 1. *top_bit: the number of the first bit, 0 for 2^0.
+ * *rest: whether anything stands behind them.
  */
 static uint64_t wide_leading_bits(const struct wide *w, int *top_bit, bool *rest)
 {
@@ -207,7 +207,9 @@ struct fixed {
 /* From here on numbers are written with an exponent. */
 #define FIXED_LIMIT 1e9
 
-/* round(below 10^places / 2^shift), halves up, exactly; below < 2^53, below < 2^shift, shift >= 23. */
+/*
+ * round(below 10^places / 2^shift), halves up, exactly; below < 2^53, below < 2^shift, shift >= 23.
+ */
 static uint32_t scale_fraction(uint64_t below, int shift, uint32_t power)
 {
     uint64_t low = (below & 0xffffffffU) * power;

@@ -1,6 +1,6 @@
 /*
- * One number line for errors: takt's own are negative, protocol codes (SDO aborts, Modbus exceptions) positive,
- * 0 is success. A broken invariant is not an error: it is an assert.
+ * One number line for errors: takt's own are negative, protocol codes (SDO aborts, Modbus
+ * exceptions) positive, 0 is success. A broken invariant is not an error: it is an assert.
  */
 #ifndef TAKT_BASE_ERROR_H
 #define TAKT_BASE_ERROR_H
@@ -10,9 +10,10 @@
 #include <stdint.h>
 
 /*
- * Every error: its name and its text. In a text, %w stands for the offending word, %v for the value, with up to
- * six decimals, %l for a second one, its limit, %u for the unit of the axis that is the word, %x for the value
- * in hexadecimal and %m for its meaning. The numbers are the order of this list, from -1 down; append at the end of a group, the numbers are not stored anywhere.
+ * Every error: its name and its text. In a text, %w stands for the offending word, %v for the
+ * value, with up to six decimals, %l for a second one, its limit, %u for the unit of the axis that
+ * is the word, %x for the value in hexadecimal and %m for its meaning. The numbers are the order of
+ * this list, from -1 down; append at the end of a group, the numbers are not stored anywhere.
  */
 #define TAKT_ERRORS(X)                                                                             \
     /* reading the text of a program */                                                            \
@@ -318,8 +319,8 @@ struct diagnostic {
 };
 
 /*
- * Fills d; word may be any length and need not end in zero. It is cut to DIAGNOSTIC_WORD_MAX bytes, never within
- * a UTF-8 character, and control characters become '?'.
+ * Fills d; word may be any length and need not end in zero. It is cut to DIAGNOSTIC_WORD_MAX bytes,
+ * never within a UTF-8 character, and control characters become '?'.
  */
 void takt_diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, uint32_t column,
                          const char *word, size_t word_length, double value);
@@ -328,8 +329,9 @@ void takt_diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t li
 void takt_diagnostic_set_limit(struct diagnostic *d, double limit);
 
 /*
- * The text of d without file, line and column ("the arc's end is 0.031 mm off its circle"), zero-terminated,
- * in text[DIAGNOSTIC_TEXT_MAX]. Returns its length. A code outside the list reads "error CODE".
+ * The text of d without file, line and column ("the arc's end is 0.031 mm off its circle"),
+ * zero-terminated, in text[DIAGNOSTIC_TEXT_MAX]. Returns its length. A code outside the list reads
+ * "error CODE".
  */
 size_t takt_diagnostic_text(const struct diagnostic *d, char *text);
 

@@ -1,8 +1,8 @@
 /*
  * The texts of errors as they are stored: plain, or packed for images (hal/port/pack_texts.py).
  *
- * Packed bytes from ERROR_TEXT_PLAIN on stand for pairs of bytes, each of which may stand for a pair again; all others
- * are characters. A text ends with 0.
+ * Packed bytes from ERROR_TEXT_PLAIN on stand for pairs of bytes, each of which may stand for a
+ * pair again; all others are characters. A text ends with 0.
  */
 #ifndef TAKT_BASE_ERROR_TEXT_H
 #define TAKT_BASE_ERROR_TEXT_H

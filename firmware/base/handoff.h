@@ -1,13 +1,15 @@
 /*
- * How the control cycle and the background hand each other memory. The cycle is an interrupt: it may come between any two
- * instructions of the background, and what it does is done at once as the background sees it. There is one processor, so
- * nothing but the compiler may put reads and writes in another order; here it must not.
+ * How the control cycle and the background hand each other memory. The cycle is an interrupt: it
+ * may come between any two instructions of the background, and what it does is done at once as the
+ * background sees it. There is one processor, so nothing but the compiler may put reads and writes
+ * in another order; here it must not.
  *
  *     writer   fills what it hands on, then sets a count or flag with handoff_set_...
  *     reader   reads that with handoff_get_..., then what it was handed
  *
- * Each count and flag has one writer, or two that write it in turn (one sets a flag, the other clears it). What is handed
- * on belongs to the reader until it hands it back in the same way. Counts are 32 bits: one access on every processor here.
+ * Each count and flag has one writer, or two that write it in turn (one sets a flag, the other
+ * clears it). What is handed on belongs to the reader until it hands it back in the same way.
+ * Counts are 32 bits: one access on every processor here.
  */
 #ifndef TAKT_BASE_HANDOFF_H
 #define TAKT_BASE_HANDOFF_H
@@ -15,7 +17,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What stands before it is done before what stands behind it: for a state that is neither count nor flag. */
+/*
+ * What stands before it is done before what stands behind it: for a state that is neither count nor
+ * flag.
+ */
 static inline void handoff_order(void)
 {
     __atomic_signal_fence(__ATOMIC_SEQ_CST);

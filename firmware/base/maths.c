@@ -68,7 +68,10 @@ struct reduced_angle {
     unsigned quadrant;
 };
 
-/* pi/2 = PART_1 + PART_2 + PART_3: 35 bits each, so that their products with 17 bits are exact, then 53 bits. */
+/*
+ * pi/2 = PART_1 + PART_2 + PART_3: 35 bits each, so that their products with 17 bits are exact,
+ * then 53 bits.
+ */
 #define HALF_PI_PART_1      0x1.921fb5444p+0
 #define HALF_PI_PART_2      0x1.68c234c4cp-39
 #define HALF_PI_PART_3      0x1.98a2e03707345p-77
@@ -76,8 +79,8 @@ struct reduced_angle {
 #define ANGLE_EXACT_MAX_RAD 1e5
 
 /*
- * Cody and Waite: rest = ((x - n P1) - n P2) - n P3, n the integer nearest to x / (pi/2).
- * Up to 1e5 rad n has 16 bits: n P1, n P2 and the first difference are exact. The second one is exact when it
+ * Cody and Waite: rest = ((x - n P1) - n P2) - n P3, n the integer nearest to x / (pi/2). Up to 1e5
+ * rad n has 16 bits: n P1, n P2 and the first difference are exact. The second one is exact when it
  * cancels, otherwise its rounding error goes to the tail.
  */
 static struct reduced_angle reduce_angle(double x)
@@ -91,8 +94,9 @@ static struct reduced_angle reduce_angle(double x)
 }
 
 /*
- * x modulo the double nearest to 2 pi, for angles no machine turns by: it replaces x by an angle at most half an
- * ulp of x away. Long division in binary: at most 1022 steps up and down, every subtraction exact.
+ * x modulo the double nearest to 2 pi, for angles no machine turns by: it replaces x by an angle at
+ * most half an ulp of x away. Long division in binary: at most 1022 steps up and down, every
+ * subtraction exact.
  */
 static double drop_whole_turns(double x)
 {
@@ -189,8 +193,9 @@ double takt_maths_tan(double x)
 }
 
 /*
- * The angle of (x, y) is base +- atan u. The base is the direction nearest to (x, y) among those of slope 0, 1/2
- * and 1 to one of the half axes; u = (small - c big) / (big + c small) is the slope to it, at most 1/4.
+ * The angle of (x, y) is base +- atan u. The base is the direction nearest to (x, y) among those of
+ * slope 0, 1/2 and 1 to one of the half axes; u = (small - c big) / (big + c small) is the slope to
+ * it, at most 1/4.
  */
 static const struct pair ATAN_BASE_RAD[4][3] = {
     /* around +x */
@@ -212,7 +217,8 @@ static const struct pair ATAN_BASE_RAD[4][3] = {
 };
 
 /*
- * Slopes about halfway between the three directions. Not below 1/4: from there on small - big / 2 is exact.
+ * Slopes about halfway between the three directions. Not below 1/4: from there on small - big / 2
+ * is exact.
  */
 #define SLOPE_0_TO_HALF 0.25
 #define SLOPE_HALF_TO_1 0.72
@@ -276,8 +282,8 @@ double takt_maths_atan2(double y, double x)
 }
 
 /*
- * f^(-1/3) for 1 <= f < 2: a minimax polynomial (2^-17), then one step of Newton for y^-3 = f (2^-33):
- * y + y (1 - f y^3) / 3.
+ * f^(-1/3) for 1 <= f < 2: a minimax polynomial (2^-17), then one step of Newton for y^-3 = f
+ * (2^-33): y + y (1 - f y^3) / 3.
  */
 static double inverse_cbrt_1_to_2(double f)
 {
@@ -291,8 +297,9 @@ static double inverse_cbrt_1_to_2(double f)
 }
 
 /*
- * Cube root of 1 <= m < 8, given y = m^(-1/3) to 2^-33. With t = the leading half of m y^2 and the exact rest
- * m - t^3 = 3 root^2 e - 3 root e^2 + ..., e = root - t: root = t + d + d^2 y + ..., d = (m - t^3) y^2 / 3.
+ * Cube root of 1 <= m < 8, given y = m^(-1/3) to 2^-33. With t = the leading half of m y^2 and the
+ * exact rest m - t^3 = 3 root^2 e - 3 root e^2 + ..., e = root - t: root = t + d + d^2 y + ..., d =
+ * (m - t^3) y^2 / 3.
  */
 static double cbrt_1_to_8(double m, double y)
 {

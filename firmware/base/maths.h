@@ -1,9 +1,10 @@
 /*
  * Deterministic mathematics: the same bits on every processor and compiler.
  *
- * Built from IEEE-754 double + - * / and square root alone, never from libm, whose last bits differ between
- * libraries. Accuracy is stated per function in units of the last place (ulp) and proved by
- * tests/unit/test_base_maths.c. NaN in gives NaN out; the sign of a zero is not kept. Angles are radians.
+ * Built from IEEE-754 double + - * / and square root alone, never from libm, whose last bits differ
+ * between libraries. Accuracy is stated per function in units of the last place (ulp) and proved by
+ * tests/unit/test_base_maths.c. NaN in gives NaN out; the sign of a zero is not kept. Angles are
+ * radians.
  */
 #ifndef TAKT_BASE_MATHS_H
 #define TAKT_BASE_MATHS_H
@@ -58,15 +59,17 @@ double takt_maths_ceil(double x);
 double takt_maths_round(double x);
 
 /*
- * Sine and cosine of the same angle, |x| <= 1e5 rad within 1 ulp. A larger finite angle counts as one at most an
- * ulp of the angle away; an infinite one gives NaN. Tangent: within 2.5 ulp.
+ * Sine and cosine of the same angle, |x| <= 1e5 rad within 1 ulp. A larger finite angle counts as
+ * one at most an ulp of the angle away; an infinite one gives NaN. Tangent: within 2.5 ulp.
  */
 void takt_maths_sincos(double x, double *sine, double *cosine);
 double takt_maths_sin(double x);
 double takt_maths_cos(double x);
 double takt_maths_tan(double x);
 
-/* Angle of the vector (x, y) in (-pi, pi], within 1 ulp; (0, 0) gives 0, an infinite component NaN. */
+/*
+ * Angle of the vector (x, y) in (-pi, pi], within 1 ulp; (0, 0) gives 0, an infinite component NaN.
+ */
 double takt_maths_atan2(double y, double x);
 /* -1 <= x <= 1, else NaN. Within 2 ulp. */
 double takt_maths_asin(double x);
@@ -75,8 +78,10 @@ double takt_maths_acos(double x);
 /* Cube root, any sign, within 1 ulp. */
 double takt_maths_cbrt(double x);
 
-/* e^x, natural logarithm (x <= 0: NaN), and x^y for part-program expressions; within 2 ulp (power: 4).
- * power: x < 0 needs an integer y, else NaN; 0^0 = 1. Overflow gives infinity. */
+/*
+ * e^x, natural logarithm (x <= 0: NaN), and x^y for part-program expressions; within 2 ulp (power:
+ * 4). power: x < 0 needs an integer y, else NaN; 0^0 = 1. Overflow gives infinity.
+ */
 double takt_maths_exp(double x);
 double takt_maths_ln(double x);
 double takt_maths_power(double x, double y);

@@ -74,7 +74,9 @@ static double exp_of_pair(struct pair x)
     return scale_by_power_of_two(one_plus_r.hi + rest, (int)k);
 }
 
-/* (ln((1 + s)/(1 - s)) - 2 s - 2/3 s^3) / s^5 = 2/5 + 2/7 s^2 + ..., z = s^2, |s| <= 3 - 2 sqrt 2. */
+/*
+ * (ln((1 + s)/(1 - s)) - 2 s - 2/3 s^3) / s^5 = 2/5 + 2/7 s^2 + ..., z = s^2, |s| <= 3 - 2 sqrt 2.
+ */
 static double ln_series(double z)
 {
     double sum = 2.0 / 23.0;
@@ -89,7 +91,10 @@ static double ln_series(double z)
     return sum * z + 2.0 / 5.0;
 }
 
-/* ln m = 2 s + 2/3 s^3 + 2/5 s^5 + ..., s = (m - 1) / (m + 1), for 1/sqrt 2 <= m <= sqrt 2, to 2^-65. */
+/*
+ * ln m = 2 s + 2/3 s^3 + 2/5 s^5 + ..., s = (m - 1) / (m + 1), for 1/sqrt 2 <= m <= sqrt 2, to
+ * 2^-65.
+ */
 static struct pair ln_near_one(double m)
 {
     static const struct pair TWO_THIRDS = {0x1.5555555555555p-1, 0x1.5555555555555p-55};

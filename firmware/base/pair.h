@@ -1,6 +1,6 @@
 /*
- * A number as the unevaluated sum hi + lo of two doubles, |lo| much smaller than |hi|: about 100 bits, for the
- * few places where one rounding too many would show in the last bit of a result.
+ * A number as the unevaluated sum hi + lo of two doubles, |lo| much smaller than |hi|: about 100
+ * bits, for the few places where one rounding too many would show in the last bit of a result.
  * Method: T. J. Dekker, "A floating-point technique for extending the available precision", 1971.
  * Private to this room.
  */
@@ -27,7 +27,9 @@ static inline struct pair pair_sum_ordered(double a, double b)
     return (struct pair){sum, (a - sum) + b};
 }
 
-/* a / (d + d_tail) with one division: q = leading half of a/d, then the exact rest a - q d over d. */
+/*
+ * a / (d + d_tail) with one division: q = leading half of a/d, then the exact rest a - q d over d.
+ */
 static inline struct pair pair_quotient(double a, double d, double d_tail)
 {
     double inverse = 1.0 / d;

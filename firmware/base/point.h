@@ -1,9 +1,9 @@
 /*
  * The axes of a machine and points in their space.
  *
- * X, Y, Z are linear: mm. A, B, C are rotary: radians inside the firmware, degrees only in part programs,
- * machine files and traces. A field that ends in _mm, _mm_s, _mm_s2 or _mm_s3 and belongs to a rotary axis
- * is in rad, rad/s, rad/s2 or rad/s3.
+ * X, Y, Z are linear: mm. A, B, C are rotary: radians inside the firmware, degrees only in part
+ * programs, machine files and traces. A field that ends in _mm, _mm_s, _mm_s2 or _mm_s3 and belongs
+ * to a rotary axis is in rad, rad/s, rad/s2 or rad/s3.
  */
 #ifndef TAKT_BASE_POINT_H
 #define TAKT_BASE_POINT_H

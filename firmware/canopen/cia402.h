@@ -1,7 +1,8 @@
 /*
  * Drive profile CiA 402-2: objects, and the state machine of a drive as both ends see it. The drive
- * moves from state to state (takt_cia402_next_state) and shows where it is (takt_cia402_statusword); the
- * controller reads that (takt_cia402_state) and says what it wants next (takt_cia402_step_to_enabled).
+ * moves from state to state (takt_cia402_next_state) and shows where it is
+ * (takt_cia402_statusword); the controller reads that (takt_cia402_state) and says what it wants
+ * next (takt_cia402_step_to_enabled).
  *
  *     NOT_READY -> SWITCH_ON_DISABLED -shutdown-> READY -switch on-> SWITCHED_ON -enable-> ENABLED
  *                        ^    ^                                                              |
@@ -104,8 +105,10 @@ enum cia402_state {
 #define CIA402_SWITCH_ON        0x0007
 #define CIA402_ENABLE_OPERATION 0x000F
 #define CIA402_FAULT_RESET      0x0080 /* acts when bit 7 rises */
-#define CIA402_START_HOMING     0x0010 /* beside ENABLE_OPERATION, in homing mode: acts when it rises */
-#define CIA402_INTERPOLATE      0x0010 /* the same in interpolated position mode: targets are followed */
+/* beside ENABLE_OPERATION, in homing mode: acts when it rises */
+#define CIA402_START_HOMING 0x0010
+/* the same in interpolated position mode: targets are followed */
+#define CIA402_INTERPOLATE 0x0010
 
 /* Bits of the statusword beside the state. */
 #define CIA402_VOLTAGE_ENABLED  0x0010

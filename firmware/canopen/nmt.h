@@ -43,9 +43,15 @@ bool takt_nmt_read_command(const struct can_frame *frame, enum nmt_command *comm
 void takt_nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state);
 /* False: the frame is no heartbeat. */
 bool takt_nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state);
-/* An answer to a guarding master is the same frame with this bit, which changes from each answer to the next (7.2.8.3.2.1). */
+/*
+ * An answer to a guarding master is the same frame with this bit, which changes from each answer to
+ * the next (7.2.8.3.2.1).
+ */
 #define NMT_TOGGLE 0x80u
-/* Reads a frame that has the identifier of a heartbeat. False: its length or its state is none that CiA 301 knows. */
+/*
+ * Reads a frame that has the identifier of a heartbeat. False: its length or its state is none that
+ * CiA 301 knows.
+ */
 static inline bool nmt_read_state(const struct can_frame *frame, enum nmt_state *state)
 {
     if (frame->length != 1)
@@ -55,7 +61,9 @@ static inline bool nmt_read_state(const struct can_frame *frame, enum nmt_state 
            *state == NMT_BOOTED;
 }
 
-/* Node guarding: the remote frame by which a master asks a node for its state, of whatever length. */
+/*
+ * Node guarding: the remote frame by which a master asks a node for its state, of whatever length.
+ */
 void takt_nmt_write_guard(struct can_frame *frame, uint8_t node);
 static inline bool nmt_is_guard(const struct can_frame *frame, uint8_t node)
 {

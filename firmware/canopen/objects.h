@@ -1,6 +1,6 @@
 /*
- * Objects of the communication profile, CiA 301, 7.5: indices of the dictionary that both ends of the bus know. Those
- * of the drive profile are in cia402.h.
+ * Objects of the communication profile, CiA 301, 7.5: indices of the dictionary that both ends of
+ * the bus know. Those of the drive profile are in cia402.h.
  */
 #ifndef TAKT_CANOPEN_OBJECTS_H
 #define TAKT_CANOPEN_OBJECTS_H
@@ -36,7 +36,9 @@
 #define OBJECT_PDO_NOT_VALID 0x80000000u
 #define OBJECT_PDO_NO_RTR    0x40000000u
 
-/* Device type: the lower half names the device profile, the upper half what the device has of it. */
+/*
+ * Device type: the lower half names the device profile, the upper half what the device has of it.
+ */
 #define OBJECT_DEVICE_PROFILE_MASK 0x0000FFFFu
 #define OBJECT_DEVICE_PROFILE_401  0x00000191u
 #define OBJECT_DEVICE_PROFILE_402  0x00000192u

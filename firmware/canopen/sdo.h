@@ -2,8 +2,8 @@
  * Service data objects (CiA 301, 7.2.4): reading and writing the objects of a node. What client
  * (sdo_client.h) and server (the virtual drives) have in common.
  *
- * Frames are 8 bytes. Byte 0 is the command with its flags; in the first frame of a transfer bytes 1
- * to 3 name the object, bytes 4 to 7 hold its value (expedited) or its length.
+ * Frames are 8 bytes. Byte 0 is the command with its flags; in the first frame of a transfer bytes
+ * 1 to 3 name the object, bytes 4 to 7 hold its value (expedited) or its length.
  */
 #ifndef TAKT_CANOPEN_SDO_H
 #define TAKT_CANOPEN_SDO_H
@@ -94,7 +94,9 @@ static inline bool sdo_says_absent(uint32_t abort_code)
     return abort_code == SDO_ABORT_NO_OBJECT || abort_code == SDO_ABORT_NO_SUB_INDEX;
 }
 
-/* Meaning of an abort code in a few words; of one that CiA 301 does not know "unknown abort code". */
+/*
+ * Meaning of an abort code in a few words; of one that CiA 301 does not know "unknown abort code".
+ */
 const char *takt_sdo_abort_text(uint32_t code);
 
 /* Bytes of the first frame, or of a segment, that hold nothing. */

@@ -76,7 +76,9 @@ static inline bool sdo_client_is_busy(const struct sdo_client *client)
 /* A frame has come; whatever is no answer to the transfer is passed over. */
 void takt_sdo_client_take(struct sdo_client *client, const struct can_frame *frame);
 
-/* True: *frame is to be sent. It is given again until takt_sdo_client_sent says that it has been. */
+/*
+ * True: *frame is to be sent. It is given again until takt_sdo_client_sent says that it has been.
+ */
 bool takt_sdo_client_next(const struct sdo_client *client, struct can_frame *frame);
 void takt_sdo_client_sent(struct sdo_client *client);
 

@@ -1,6 +1,6 @@
 /*
- * The server's end of SDO (CiA 301, 7.2.4): expedited, segmented and block transfers, both ways, one
- * at a time. It knows neither objects nor a port: whoever owns it has the functions for them.
+ * The server's end of SDO (CiA 301, 7.2.4): expedited, segmented and block transfers, both ways,
+ * one at a time. It knows neither objects nor a port: whoever owns it has the functions for them.
  *
  *     IDLE --upload-----------> UPLOAD --last segment--> IDLE
  *          --download---------> DOWNLOAD --last segment--> IDLE

@@ -1,8 +1,9 @@
 /*
- * RPDO2 of the drives of a machine: their target positions, as many drives to a frame as it holds: two, with CAN FD six.
+ * RPDO2 of the drives of a machine: their target positions, as many drives to a frame as it holds:
+ * two, with CAN FD six.
  *
- * Drives are grouped in the order of the machine. The frame has the identifier of the first drive of
- * its group; each drive maps its own part and skips the others by dummies. Of a pair:
+ * Drives are grouped in the order of the machine. The frame has the identifier of the first drive
+ * of its group; each drive maps its own part and skips the others by dummies. Of a pair:
  *
  *     bytes         0 1 2 3     4 5 6 7
  *     first drive   607A:00     dummy

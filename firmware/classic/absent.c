@@ -1,4 +1,6 @@
-/* In the place of everything else here, in a build without it. No machine that asks for more gets this far: takt_machine_check.
+/*
+ * In the place of everything else here, in a build without it. No machine that asks for more gets
+ * this far: takt_machine_check.
  */
 #include "base/assert.h"
 #include "classic/classic.h"

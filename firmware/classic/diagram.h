@@ -8,9 +8,10 @@
  *         +----|---|-------------|--|-------> time
  *            up_s     even_s     down_s        each a whole number of cycles
  *
- * Ramps follow an S-curve of limited jerk, stretched to whole cycles. The way of the diagram is then a little longer than
- * the block; every feed is multiplied by kl = length / way <= 1 (3), (4), so that the block ends with a cycle. Its end
- * feeds are multiplied too: between two blocks feed steps by |kl - kl'| F.
+ * Ramps follow an S-curve of limited jerk, stretched to whole cycles. The way of the diagram is
+ * then a little longer than the block; every feed is multiplied by kl = length / way <= 1 (3), (4),
+ * so that the block ends with a cycle. Its end feeds are multiplied too: between two blocks feed
+ * steps by |kl - kl'| F.
  */
 #ifndef TAKT_CLASSIC_DIAGRAM_H
 #define TAKT_CLASSIC_DIAGRAM_H
@@ -35,7 +36,10 @@ struct diagram {
 /* Shortest time in which feed changes by so much, >= 0. */
 double takt_diagram_ramp_s(const struct diagram_limits *limits, double change_mm_s);
 
-/* The highest feed from which, or to which, one can come from another, at most the highest, within the length. */
+/*
+ * The highest feed from which, or to which, one can come from another, at most the highest, within
+ * the length.
+ */
 double takt_diagram_reach(const struct diagram_limits *limits, double feed_mm_s);
 
 /* The diagram between two feeds, each to be reached from the other within the length. */

@@ -88,7 +88,9 @@ static void look_for_end(struct integrate_line *l)
     }
 }
 
-/* Words too short for the velocity do not move any more: the exact end is all that is left to do. */
+/*
+ * Words too short for the velocity do not move any more: the exact end is all that is left to do.
+ */
 static bool stands(const struct integrate_line *l)
 {
     return l->phase != INTEGRATE_ACCELERATING && l->axes.velocity[l->leading] == 0;

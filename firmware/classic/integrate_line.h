@@ -1,6 +1,6 @@
 /*
- * A whole line by digital integration with its own feed: acceleration, constant feed, braking, the end rule. The source's
- * form, for comparison; it knows no jerk.
+ * A whole line by digital integration with its own feed: acceleration, constant feed, braking, the
+ * end rule. The source's form, for comparison; it knows no jerk.
  *
  *     V |      ____________
  *       |     /            \           Braking begins dS + N V_end before the end, dS = (V^2 - V_end^2) / (2 a), so that
@@ -15,7 +15,10 @@
 
 #include <stdbool.h>
 
-/* Along the path, per cycle: feeds mm, acceleration mm per cycle and cycle. All feeds <= feed, acceleration > 0. */
+/*
+ * Along the path, per cycle: feeds mm, acceleration mm per cycle and cycle. All feeds <= feed,
+ * acceleration > 0.
+ */
 struct integrate_line_config {
     double unit_mm;
     double length_mm;

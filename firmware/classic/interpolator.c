@@ -6,7 +6,9 @@
 
 #include <string.h>
 
-/* Feeds that differ by less, as a part, are the same: rounding of the places they are taken from. */
+/*
+ * Feeds that differ by less, as a part, are the same: rounding of the places they are taken from.
+ */
 #define SAME_FEED 1e-6
 
 void takt_interpolator_init(struct interpolator *i, const struct interpolator_config *config)
@@ -106,9 +108,9 @@ static void raise_to(double *largest, double value)
 }
 
 /*
- * V(j+1) = V(j) + a while the feed changes, the exact V when it no longer does. The end rule is for the end of a block that
- * is passed at a constant feed; N is what the planner's feed has left, not rounded to a power of two, since its cycles are
- * the planner's.
+ * V(j+1) = V(j) + a while the feed changes, the exact V when it no longer does. The end rule is for
+ * the end of a block that is passed at a constant feed; N is what the planner's feed has left, not
+ * rounded to a power of two, since its cycles are the planner's.
  */
 static void choose_velocity(struct interpolator *i, double way_mm, double left_mm)
 {
@@ -164,8 +166,8 @@ static void integrate_to(struct interpolator *i, double part, struct point *cmd)
 }
 
 /*
- * Sums of R dphi^3 / 6 along, dphi^4 / 8 across: bounds_rotation_... of accuracy/bounds.h for angles that change. Angles in
- * words are late or early by half of the last bit besides.
+ * Sums of R dphi^3 / 6 along, dphi^4 / 8 across: bounds_rotation_... of accuracy/bounds.h for
+ * angles that change. Angles in words are late or early by half of the last bit besides.
  */
 static void add_rotation_bounds(struct interpolator *i, double angle_rad)
 {
@@ -197,7 +199,9 @@ static void rotate_to(struct interpolator *i, double part, struct point *cmd)
     cmd->at[arc->second] = arc->centre_mm[1] + b;
 }
 
-/* The step of this cycle; a landed end is set to its exact value, and what that takes is measured. */
+/*
+ * The step of this cycle; a landed end is set to its exact value, and what that takes is measured.
+ */
 static void interpolate(struct interpolator *i, bool landed, struct point *cmd)
 {
     const struct point exact = *cmd;

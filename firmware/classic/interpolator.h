@@ -1,12 +1,13 @@
 /*
- * Named interpolators: how the path length of a cycle becomes a position of every axis. They come after the feed, which
- * is the planner's in all of them.
+ * Named interpolators: how the path length of a cycle becomes a position of every axis. They come
+ * after the feed, which is the planner's in all of them.
  *
  *     exact      the curve's own formula at the arc length; the default, and nothing is done here
  *     integrate  lines by digital integration in machine units
  *     rotate     circles and helices by rotating the radius vector
  *
- * Whatever a named one is not for stays exact. Every block begins at its exact start and, where it lands, ends there.
+ * Whatever a named one is not for stays exact. Every block begins at its exact start and, where it
+ * lands, ends there.
  */
 #ifndef TAKT_CLASSIC_INTERPOLATOR_H
 #define TAKT_CLASSIC_INTERPOLATOR_H
@@ -28,8 +29,10 @@ struct interpolator_config {
     double way_max_mm;  /* rotate: the farthest way in a cycle, V_max dt; > 0 */
 };
 
-/* Bits of a signed word for every position, and its default: with 1 m in steps of 1 um there are 32 bits behind it. A ramp
- * of 60,000 cycles then loses less than that (N^2 units, up and down). */
+/*
+ * Bits of a signed word for every position, and its default: with 1 m in steps of 1 um there are 32
+ * bits behind it. A ramp of 60,000 cycles then loses less than that (N^2 units, up and down).
+ */
 #define INTERPOLATOR_WORD_BITS_MIN 8
 #define INTERPOLATOR_WORD_BITS_MAX 62
 #define INTERPOLATOR_WORD_BITS     53
@@ -38,8 +41,8 @@ struct interpolator_config {
 #define INTERPOLATOR_ANGLE_BITS_MAX 24
 
 /*
- * What the last bit of a signed word of word_bits bits is worth, when it counts a range: the increment times a power of
- * two, the least with which the range fits. All > 0.
+ * What the last bit of a signed word of word_bits bits is worth, when it counts a range: the
+ * increment times a power of two, the least with which the range fits. All > 0.
  */
 double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits);
 
@@ -84,8 +87,8 @@ static inline bool interpolator_is_exact(const struct interpolator *i)
 }
 
 /*
- * One cycle of a motion. cmd: in the exact setpoint, on the curve; out what this interpolator makes of it. block tells one
- * motion from the next; landed: cmd is the motion's end.
+ * One cycle of a motion. cmd: in the exact setpoint, on the curve; out what this interpolator makes
+ * of it. block tells one motion from the next; landed: cmd is the motion's end.
  */
 void takt_interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
                              bool landed, struct point *cmd);

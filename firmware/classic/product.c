@@ -127,7 +127,9 @@ static void follow_override(struct product *p, const struct block *b, double to)
     }
 }
 
-/* K, found in this cycle for the next one, of what the axes' velocities would have been without it. */
+/*
+ * K, found in this cycle for the next one, of what the axes' velocities would have been without it.
+ */
 static void limit_axes(struct product *p, const struct motion *m, const struct point *at)
 {
     struct point velocity;
@@ -161,8 +163,8 @@ static bool is_last(const struct motion *m)
 }
 
 /*
- * Goes on in the diagram, and over into the next ones; returns the way. *landed: the cycle ends with a block. *rests: at
- * the end of one that is not passed.
+ * Goes on in the diagram, and over into the next ones; returns the way. *landed: the cycle ends
+ * with a block. *rests: at the end of one that is not passed.
  */
 static double go(struct product *p, struct motion *m, bool *landed, bool *rests)
 {
@@ -210,7 +212,9 @@ static void leave_landed(struct product *p, struct motion *m)
     }
 }
 
-/* May the stop be left? Not in the cycle that has passed something there, which may be waited for. */
+/*
+ * May the stop be left? Not in the cycle that has passed something there, which may be waited for.
+ */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
     return m->passed_first == m->path->first && !wanted->wait &&

@@ -3,12 +3,14 @@
  *
  *     F = F_diagram kl %Fz K                                             (5), (12)
  *
- * F_diagram kl is diagram.h; %Fz follows the override %F by an S-curve, and stands still while a block brakes; K is
- * limiter.h, of the cycle before. For comparison: a product passes limits, and the verifier says by how much. Chosen by
- * landing=scale or limiter=threshold|smooth in the machine file.
+ * F_diagram kl is diagram.h; %Fz follows the override %F by an S-curve, and stands still while a
+ * block brakes; K is limiter.h, of the cycle before. For comparison: a product passes limits, and
+ * the verifier says by how much. Chosen by landing=scale or limiter=threshold|smooth in the machine
+ * file.
  *
- * struct motion serves what happens at rest, and hands over the blocks (motion/handover.h). End feeds are found when a
- * block begins, backwards over all blocks that are known: more work in one cycle than a target has time for.
+ * struct motion serves what happens at rest, and hands over the blocks (motion/handover.h). End
+ * feeds are found when a block begins, backwards over all blocks that are known: more work in one
+ * cycle than a target has time for.
  */
 #ifndef TAKT_CLASSIC_PRODUCT_H
 #define TAKT_CLASSIC_PRODUCT_H
@@ -49,7 +51,10 @@ struct product {
 
 void takt_product_init(struct product *p, const struct product_config *config);
 
-/* One cycle instead of takt_motion_cycle, when that says MOTION_HANDED_OVER. Fills everything of the record but set and act. */
+/*
+ * One cycle instead of takt_motion_cycle, when that says MOTION_HANDED_OVER. Fills everything of
+ * the record but set and act.
+ */
 void takt_product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
                         struct cycle_record *record);
 

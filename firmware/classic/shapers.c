@@ -14,7 +14,10 @@ static double left_after(const struct shape_mode *mode, double periods)
                           maths_sqrt(1.0 - mode->damping * mode->damping));
 }
 
-/* Impulses at 0, n and 2 n periods; an undamped mode has the first, the second, and the first again. */
+/*
+ * Impulses at 0, n and 2 n periods; an undamped mode has the first, the second, and the first
+ * again.
+ */
 static void set_three(struct train *t, const struct shape_mode *mode, double cycle_s, double n,
                       double first, double second)
 {
@@ -35,7 +38,9 @@ void takt_shapers_mzv(const struct shape_mode *mode, double cycle_s, struct trai
     set_three(t, mode, cycle_s, 0.375, 1.0 - maths_sqrt(0.5), maths_sqrt(2.0) - 1.0);
 }
 
-/* (1 + V)/4, (1 - V)/2, (1 + V)/4 at 0, 1/2 and 1 of a period (Singhose, Seering and Singer 1990). */
+/*
+ * (1 + V)/4, (1 - V)/2, (1 + V)/4 at 0, 1/2 and 1 of a period (Singhose, Seering and Singer 1990).
+ */
 void takt_shapers_ei(const struct shape_mode *mode, double cycle_s, struct train *t)
 {
     set_three(t, mode, cycle_s, 0.5, 0.25 * (1.0 + EI_LEFT), 0.5 * (1.0 - EI_LEFT));

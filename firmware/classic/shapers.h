@@ -1,6 +1,6 @@
 /*
- * Input shapers as printers' firmware has them, for comparison with the room shape: trains of impulses for one mode, at times
- * that lie between cycles. As struct shape_config wants them.
+ * Input shapers as printers' firmware has them, for comparison with the room shape: trains of
+ * impulses for one mode, at times that lie between cycles. As struct shape_config wants them.
  */
 #ifndef TAKT_CLASSIC_SHAPERS_H
 #define TAKT_CLASSIC_SHAPERS_H

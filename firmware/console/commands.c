@@ -27,8 +27,8 @@ static enum console_result answer(struct console *c, enum console_error error)
 }
 
 /*
- * Text that stands before the line comes to its end, since no more of it can come. While the axes move that would be long:
- * the line is then refused, as it is where others move them.
+ * Text that stands before the line comes to its end, since no more of it can come. While the axes
+ * move that would be long: the line is then refused, as it is where others move them.
  */
 static bool waits_for_rest(struct console *c, const struct panel_snapshot *now)
 {
@@ -107,7 +107,10 @@ static enum console_result check(struct console *c, const struct panel_snapshot 
     return answer(c, CONSOLE_OK);
 }
 
-/* Spindle and coolant off, and no line is taken until a reset. The drives stay on: they hold what hangs. */
+/*
+ * Spindle and coolant off, and no line is taken until a reset. The drives stay on: they hold what
+ * hangs.
+ */
 static enum console_result sleep(struct console *c, const struct panel_snapshot *now)
 {
     enum panel_refusal refusal;

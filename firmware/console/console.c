@@ -237,7 +237,10 @@ static enum console_result program_line(struct console *c, const char *text, enu
     return CONSOLE_WAITS;
 }
 
-/* Answers come in the order of the lines. What needs the machine at rest is not kept waiting for text that cannot come. */
+/*
+ * Answers come in the order of the lines. What needs the machine at rest is not kept waiting for
+ * text that cannot come.
+ */
 static enum console_result own_line(struct console *c, uint8_t mark, const char *text,
                                     const struct panel_snapshot *now)
 {
@@ -278,7 +281,10 @@ static bool take_line(struct console *c, const struct panel_snapshot *now)
 
 /* ---- what happens by itself ---- */
 
-/* The program of the lines has ended; those it has not read are the console's again. Given up or failed, nothing that was to follow goes on by itself. */
+/*
+ * The program of the lines has ended; those it has not read are the console's again. Given up or
+ * failed, nothing that was to follow goes on by itself.
+ */
 static void follow_program(struct console *c, const struct panel_snapshot *now)
 {
     const bool active = takt_lines_are_read(c->config.lines);

@@ -1,13 +1,13 @@
 /*
- * The console: Grbl 1.1's interface, for the senders people have. Bytes of a sender in, answers out; it does nothing itself
- * and knows no controller.
+ * The console: Grbl 1.1's interface, for the senders people have. Bytes of a sender in, answers
+ * out; it does nothing itself and knows no controller.
  *
  *     byte -> real-time order, at once
  *          -> line -> text of a program -> lines.h -> the program that runs; "ok" when it asks for the next line
  *                  -> $ command -> an order of the panel, or a report
  *
- * Its orders are those of a client of the panel, by the panel's rules. No input or output. One thread calls it, beside the
- * one that reads the lines.
+ * Its orders are those of a client of the panel, by the panel's rules. No input or output. One
+ * thread calls it, beside the one that reads the lines.
  */
 #ifndef TAKT_CONSOLE_CONSOLE_H
 #define TAKT_CONSOLE_CONSOLE_H
@@ -21,7 +21,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a console asks the controller for besides its registers: six numbers, of X Y Z A B C, in mm and degrees. */
+/*
+ * What a console asks the controller for besides its registers: six numbers, of X Y Z A B C, in mm
+ * and degrees.
+ */
 enum console_fact {
     CONSOLE_FACT_SYSTEM, /* offset of G54; the next ones are G55 ... G59.3 */
     CONSOLE_FACT_REFERENCE_1 = 9,
@@ -29,7 +32,8 @@ enum console_fact {
     CONSOLE_FACT_AXIS_OFFSET, /* G92 */
     CONSOLE_FACT_TOOL_OFFSET,
     CONSOLE_FACT_PROBE, /* where it answered last, machine coordinates */
-    CONSOLE_FACT_WORDS, /* not of axes: 1 if that probing ended by contact, F in mm/min, S, the digit of M3 M4 M5, T */
+    /* not of axes: 1 if that probing ended by contact, F in mm/min, S, the digit of M3 M4 M5, T */
+    CONSOLE_FACT_WORDS,
 };
 
 /* What stands behind a console. None of these may keep the control cycle waiting. */
@@ -40,7 +44,10 @@ struct console_port {
     enum panel_refusal (*unlock)(void *context, uint32_t password);
     /* False: it cannot be told now. */
     bool (*tell)(void *context, enum console_fact fact, double value[AXIS_COUNT]);
-    /* Reads a line of a program and does nothing; begins: the first one. NULL: there is no check mode. */
+    /*
+     * Reads a line of a program and does nothing; begins: the first one. NULL: there is no check
+     * mode.
+     */
     enum takt_error (*check)(void *context, const char *line, bool begins);
     void (*write)(void *context, const char *text, size_t length);
     void *context; /* owned by whoever made the port */

@@ -1,6 +1,6 @@
 /*
- * $J=: a straight line to a place, by words of its own. The modes of the text around it count only where Grbl says so: units
- * (G20, G21) and distances (G90, G91).
+ * $J=: a straight line to a place, by words of its own. The modes of the text around it count only
+ * where Grbl says so: units (G20, G21) and distances (G90, G91).
  */
 #include "base/assert.h"
 #include "base/decimal.h"
@@ -180,7 +180,10 @@ static enum console_result refuse(struct console *c, enum console_error error)
     return CONSOLE_ANSWERED;
 }
 
-/* Another jog is under way: this one follows it. What still runs of the text before has set its modes alone. */
+/*
+ * Another jog is under way: this one follows it. What still runs of the text before has set its
+ * modes alone.
+ */
 static bool follows(struct console *c, const struct panel_snapshot *now)
 {
     const enum panel_state state = console_state(now);

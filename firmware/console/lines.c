@@ -7,7 +7,10 @@
 /* A line takes its mark and its end besides its characters. */
 #define EMPTY_LINE 2U
 
-/* Between threads, or a background and what interrupts it: what was written before is there when the new value is seen. */
+/*
+ * Between threads, or a background and what interrupts it: what was written before is there when
+ * the new value is seen.
+ */
 
 static uint32_t get_place(const struct lines_place *place)
 {
@@ -217,7 +220,10 @@ enum takt_error takt_lines_get_cause(const struct lines *l)
 
 /* ---- program ---- */
 
-/* The line handed out is done: its answer, then the place, so that the console finds the one when it sees the other. */
+/*
+ * The line handed out is done: its answer, then the place, so that the console finds the one when
+ * it sees the other.
+ */
 static void finish_handed(struct lines *l)
 {
     TAKT_ASSERT(l->is_handed);
@@ -226,7 +232,10 @@ static void finish_handed(struct lines *l)
     set_place(&l->read, l->end);
 }
 
-/* The next line for the program; what the console has answered is passed over. False: there is none. */
+/*
+ * The next line for the program; what the console has answered is passed over. False: there is
+ * none.
+ */
 static bool hand_out(struct lines *l)
 {
     const uint32_t released = get_place(&l->released);

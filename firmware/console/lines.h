@@ -4,8 +4,8 @@
  *     console   puts bytes, releases lines to the program, collects what became of them, in order
  *     program   reads released lines, one after the other; asking for the next one is the answer to the last
  *
- * These two may be two threads. Every line stands in the ring behind a mark, where its answer is put: so there is no list of
- * answers, and no line without one.
+ * These two may be two threads. Every line stands in the ring behind a mark, where its answer is
+ * put: so there is no list of answers, and no line without one.
  *
  *     collected    read       released    written   at
  *     ----|---------|-------------|----------|-------|----
@@ -79,7 +79,10 @@ void takt_lines_spoil(struct lines *l);
 /* Drops everything; no program reads. */
 void takt_lines_clear(struct lines *l);
 
-/* The first line not released, without its end, into text[LINES_LENGTH_MAX + 1]; its mark. 0: there is none. */
+/*
+ * The first line not released, without its end, into text[LINES_LENGTH_MAX + 1]; its mark. 0: there
+ * is none.
+ */
 uint8_t takt_lines_look(const struct lines *l, char *text);
 void takt_lines_release(struct lines *l);
 /* The console has answered that line itself. */

@@ -30,7 +30,10 @@ enum realtime {
 #define WHOLE          1000
 #define OVERRIDE_LEAST 100
 
-/* What is known of the spindle is older than what it is told by less than this, and a snapshot by one more. */
+/*
+ * What is known of the spindle is older than what it is told by less than this, and a snapshot by
+ * one more.
+ */
 #define FEEDBACK_CYCLES 5
 
 /* What the bytes of a group of five do: set 100 %, or add this many counts. */

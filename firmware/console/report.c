@@ -353,8 +353,8 @@ static void report_axes(struct console *c)
 }
 
 /*
- * Grbl's letters of what it has been built with: variable spindle, mist; $RST=*, $RST=$ and $I=text are not there, and power-on
- * is no alarm although there is homing.
+ * Grbl's letters of what it has been built with: variable spindle, mist; $RST=*, $RST=$ and $I=text
+ * are not there, and power-on is no alarm although there is homing.
  */
 #define OPTIONS "VM*$IL"
 

@@ -1,6 +1,6 @@
 /*
- * Settings: what of the machine a sender asks for under Grbl's numbers. They are the machine file's and are read; two are of
- * the reports and may be set, until the next sender comes.
+ * Settings: what of the machine a sender asks for under Grbl's numbers. They are the machine file's
+ * and are read; two are of the reports and may be set, until the next sender comes.
  */
 #include "base/assert.h"
 #include "base/decimal.h"
@@ -141,7 +141,10 @@ static double get_travel(const struct console *c, unsigned axis)
     return (a->travel_max_mm - a->travel_min_mm) * unit_of(a);
 }
 
-/* Homing ($22) always does something: without switches the axes go to machine zero. Travel ($20) is always watched. */
+/*
+ * Homing ($22) always does something: without switches the axes go to machine zero. Travel ($20) is
+ * always watched.
+ */
 static const struct setting settings[] = {
     {0, 0, zero},
     {1, 0, zero},

@@ -14,8 +14,8 @@
 /*
  * A move over D in the time T,
  *     x(t) = D (10 u^3 - 15 u^4 + 6 u^5),   u = t / T,
- * begins and ends at rest with no acceleration. Its extremes, of the derivatives in u at 1/2, at 1/2 -+ sqrt(3)/6 and
- * at the ends:
+ * begins and ends at rest with no acceleration. Its extremes, of the derivatives in u at 1/2, at
+ * 1/2 -+ sqrt(3)/6 and at the ends:
  *     v = 15/8 D / T,   a = 10/sqrt(3) D / T^2,   j = 60 D / T^3
  */
 #define PEAK_VELOCITY     1.875

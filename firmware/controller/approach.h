@@ -1,6 +1,6 @@
 /*
- * The way from where the drives stand to where the program starts, before its first cycle: axes in the order they are
- * homed in, those of an order together, the others last.
+ * The way from where the drives stand to where the program starts, before its first cycle: axes in
+ * the order they are homed in, those of an order together, the others last.
  */
 #ifndef TAKT_CONTROLLER_APPROACH_H
 #define TAKT_CONTROLLER_APPROACH_H
@@ -22,8 +22,8 @@ struct approach {
 void takt_approach_init(struct approach *approach, const struct point *start);
 
 /*
- * One cycle. actual: where the drives stand, looked at in the first cycle. True: the axes are where the program
- * starts; *setpoint is that. False: *setpoint is the next one on the way.
+ * One cycle. actual: where the drives stand, looked at in the first cycle. True: the axes are where
+ * the program starts; *setpoint is that. False: *setpoint is the next one on the way.
  */
 bool takt_approach_cycle(struct approach *approach, const struct machine *machine,
                          const struct point *actual, struct point *setpoint);

@@ -1,4 +1,7 @@
-/* The controller's background: the program is read and planned as far ahead as there is room, and ceilings are built. */
+/*
+ * The controller's background: the program is read and planned as far ahead as there is room, and
+ * ceilings are built.
+ */
 #include "controller/controller.h"
 
 #include "base/assert.h"
@@ -83,7 +86,10 @@ static void read_move(struct controller *c)
     }
 }
 
-/* The axes rest for the set-up that has been told: it is taken, and is in force before they move. True: it is, or *good is not. */
+/*
+ * The axes rest for the set-up that has been told: it is taken, and is in force before they move.
+ * True: it is, or *good is not.
+ */
 static bool take_setup(struct controller *c, bool *good)
 {
     if (!controller_probe_has_rest_for(&c->probe, MOVE_SETUP)) {
@@ -135,7 +141,10 @@ static bool waits_for_text(struct controller *c)
            (!c->program_begins || takt_motion_ahead(&c->motion) == 0);
 }
 
-/* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
+/*
+ * Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made
+ * for many blocks.
+ */
 #define TOP_UP_PART 8
 
 void takt_controller_background(struct controller *c)

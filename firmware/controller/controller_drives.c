@@ -30,10 +30,10 @@ static void set_homing(struct drives_homing *homing, const struct machine *machi
 }
 
 /*
- * K = 1 / (4 T) of the position loop that is closed here (drive/drives_velocity.c). T is what a setpoint takes to the
- * report of its position, less the half of a cycle that it is held for, and the drive's own delay: it has to follow
- * setpoints whose acceleration is there after A/J, so that is the most that it can be. The same for all axes, for then a
- * straight path stays one.
+ * K = 1 / (4 T) of the position loop that is closed here (drive/drives_velocity.c). T is what a
+ * setpoint takes to the report of its position, less the half of a cycle that it is held for, and
+ * the drive's own delay: it has to follow setpoints whose acceleration is there after A/J, so that
+ * is the most that it can be. The same for all axes, for then a straight path stays one.
  */
 static double position_gain_per_s(const struct machine *machine)
 {
@@ -73,10 +73,11 @@ static void add_drive(struct drives_config *config, const struct machine *machin
 }
 
 /*
- * The homing method that looks on the same side of the axis with a motor that turns the other way (CiA 402-2, object
- * 6098): limit switches, 1 and 2, change places, so do home switches of either end, 3 4 and 5 6, and the directions of
- * a search about a switch between them, 7 ... 10 and 11 ... 14. From 17 on the same without index pulse; 33 and 34 are
- * index pulses alone, what comes behind has no direction.
+ * The homing method that looks on the same side of the axis with a motor that turns the other way
+ * (CiA 402-2, object 6098): limit switches, 1 and 2, change places, so do home switches of either
+ * end, 3 4 and 5 6, and the directions of a search about a switch between them, 7 ... 10 and 11 ...
+ * 14. From 17 on the same without index pulse; 33 and 34 are index pulses alone, what comes behind
+ * has no direction.
  */
 static int8_t mirror_method(int8_t method)
 {
@@ -124,7 +125,10 @@ static void add_second(struct drives_config *config, const struct machine *machi
     }
 }
 
-/* The drive that was added last, by its configuration, if there is one: it is as if it had been set up before. */
+/*
+ * The drive that was added last, by its configuration, if there is one: it is as if it had been set
+ * up before.
+ */
 static void set_up_last(struct drives_config *config, const struct concise_dcf *dcf, unsigned i)
 {
     struct drives_config_axis *drive = &config->axis[config->count - 1];

@@ -1,6 +1,7 @@
 /*
- * Who makes the setpoints of blocks that motion does not run itself: threads (room sync), and on a machine with a form of
- * the source in the place of the planner's feed, all but probing moves (classic/product.h).
+ * Who makes the setpoints of blocks that motion does not run itself: threads (room sync), and on a
+ * machine with a form of the source in the place of the planner's feed, all but probing moves
+ * (classic/product.h).
  */
 #ifndef TAKT_CONTROLLER_CONTROLLER_FEED_H
 #define TAKT_CONTROLLER_CONTROLLER_FEED_H

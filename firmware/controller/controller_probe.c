@@ -52,7 +52,9 @@ static void find(struct controller_probe *q, const struct controller_place *at)
     q->answer.rest_at = at->reported;
 }
 
-/* As in LinuxCNC, a move that must find what it looks for may not begin where it is found already. */
+/*
+ * As in LinuxCNC, a move that must find what it looks for may not begin where it is found already.
+ */
 bool takt_controller_probe_watch(struct controller_probe *q, const struct move *executed,
                                  const struct inputs *inputs, const struct controller_place *at)
 {
@@ -114,7 +116,10 @@ static void end_without_contact(struct controller_probe *q, const struct point *
     }
 }
 
-/* The drives may follow up to the end after the last setpoint: the probe is looked at once more. False: not yet. */
+/*
+ * The drives may follow up to the end after the last setpoint: the probe is looked at once more.
+ * False: not yet.
+ */
 static bool end_probing(struct controller_probe *q, const struct inputs *inputs,
                         struct drives *drives, const struct point *rest,
                         const struct controller_place *at)

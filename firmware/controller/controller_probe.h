@@ -1,6 +1,6 @@
 /*
- * What a program asks of the world, and waits for: where a probe answers (G38), what an input says (M66); for G10 L13, that
- * the axes rest.
+ * What a program asks of the world, and waits for: where a probe answers (G38), what an input says
+ * (M66); for G10 L13, that the axes rest.
  *
  *     background                              control cycle
  *       program gives out the move
@@ -12,8 +12,9 @@
  *       takt_controller_probe_take    ←──────────
  *       takt_cutter_compensation_answer, and on from where the axes rest
  *
- * Nobody else is asked meanwhile: the program reads nothing until it is answered. struct controller_probe passes from
- * the background to the cycle by ask and back when it is answered; nobody touches it out of turn.
+ * Nobody else is asked meanwhile: the program reads nothing until it is answered. struct
+ * controller_probe passes from the background to the cycle by ask and back when it is answered;
+ * nobody touches it out of turn.
  */
 #ifndef TAKT_CONTROLLER_CONTROLLER_PROBE_H
 #define TAKT_CONTROLLER_CONTROLLER_PROBE_H
@@ -28,7 +29,8 @@
 
 enum controller_probe_state {
     PROBE_IDLE, /* nothing has been asked */
-    PROBE_HELD, /* the move is not on the path yet: the axes come to rest, the drives' touch probes are armed */
+    /* the move is not on the path yet: the axes come to rest, the drives' touch probes are armed */
+    PROBE_HELD,
     PROBE_ARMED,   /* they are: the background puts it there */
     PROBE_ASKED,   /* the move is executed, or comes to rest, or waits */
     PROBE_ANSWERED /* answer and error hold */
@@ -49,8 +51,8 @@ struct controller_probe {
 };
 
 /*
- * A move has come from the program: remembers it when it asks for something. latches: drives have touch probes. False: it
- * is not to go onto the path before takt_controller_probe_begin says so.
+ * A move has come from the program: remembers it when it asks for something. latches: drives have
+ * touch probes. False: it is not to go onto the path before takt_controller_probe_begin says so.
  */
 bool takt_controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
                                bool latches);
@@ -72,14 +74,15 @@ struct controller_place {
 };
 
 /*
- * In each cycle that executes a motion. True, once: the motion is to brake at once and to end where it comes to rest.
+ * In each cycle that executes a motion. True, once: the motion is to brake at once and to end where
+ * it comes to rest.
  */
 bool takt_controller_probe_watch(struct controller_probe *q, const struct move *executed,
                                  const struct inputs *inputs, const struct controller_place *at);
 
 /*
- * In each cycle in which all that has been read is done and the program waits. rest: where the axes have been sent to
- * last. True: answered.
+ * In each cycle in which all that has been read is done and the program waits. rest: where the axes
+ * have been sent to last. True: answered.
  */
 bool takt_controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
                                 struct drives *drives, const struct point *rest,
@@ -92,7 +95,10 @@ static inline bool controller_probe_has_rest_for(const struct controller_probe *
     return q->state == PROBE_ANSWERED && q->move.kind == kind;
 }
 
-/* The answer that waits to be taken, and TAKT_OK or the error that ends the program; false: there is none. */
+/*
+ * The answer that waits to be taken, and TAKT_OK or the error that ends the program; false: there
+ * is none.
+ */
 bool takt_controller_probe_take(struct controller_probe *q, struct program_answer *answer,
                                 struct diagnostic *error);
 

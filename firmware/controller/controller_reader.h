@@ -1,6 +1,6 @@
 /*
- * What reads a part program. It stands beside the controller, since a processor may have memories of several kinds: only
- * the background touches it, and no peripheral.
+ * What reads a part program. It stands beside the controller, since a processor may have memories
+ * of several kinds: only the background touches it, and no peripheral.
  */
 #ifndef TAKT_CONTROLLER_CONTROLLER_READER_H
 #define TAKT_CONTROLLER_CONTROLLER_READER_H

@@ -1,4 +1,7 @@
-/* What shaping makes of the setpoints of a controller. Where it has none, and in a build without it, nothing. */
+/*
+ * What shaping makes of the setpoints of a controller. Where it has none, and in a build without
+ * it, nothing.
+ */
 #ifndef TAKT_CONTROLLER_CONTROLLER_SHAPE_H
 #define TAKT_CONTROLLER_CONTROLLER_SHAPE_H
 
@@ -45,8 +48,8 @@ static inline void controller_shape_restart(struct controller *c)
 }
 
 /*
- * Shapes what correction has made of this cycle's setpoint. passes: it goes by as it is, since nothing may come between the axes
- * and the spindle; it begins and ends at rest.
+ * Shapes what correction has made of this cycle's setpoint. passes: it goes by as it is, since
+ * nothing may come between the axes and the spindle; it begins and ends at rest.
  */
 static inline void controller_shape_cycle(struct controller *c, bool passes)
 {

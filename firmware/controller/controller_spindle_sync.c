@@ -4,8 +4,8 @@
 #define WAIT_S 10.0
 
 /*
- * A setpoint sent in cycle k is reached two cycles after the angle of cycle k was read: in the third the position of that
- * moment is reported (DRIVES_LATENCY_CYCLES).
+ * A setpoint sent in cycle k is reached two cycles after the angle of cycle k was read: in the
+ * third the position of that moment is reported (DRIVES_LATENCY_CYCLES).
  */
 #define AHEAD_CYCLES ((double)(DRIVES_LATENCY_CYCLES - 1))
 

@@ -1,5 +1,6 @@
 /*
- * Inside the controller: public only so that the caller can own the memory. Read controller.h instead.
+ * Inside the controller: public only so that the caller can own the memory. Read controller.h
+ * instead.
  */
 #ifndef TAKT_CONTROLLER_CONTROLLER_STATE_H
 #define TAKT_CONTROLLER_CONTROLLER_STATE_H
@@ -44,7 +45,10 @@ struct controller {
     struct tool_changer changer;
     struct spindle_sync sync;       /* threads */
     struct outputs_surface surface; /* G96 */
-    /* cmd and set also without a program cycle: where the axes stand by the program, and what is sent to the drives */
+    /*
+     * cmd and set also without a program cycle: where the axes stand by the program, and what is
+     * sent to the drives
+     */
     struct cycle_record record;
     struct controller_reader *reader;
     struct path path;
@@ -60,7 +64,10 @@ struct controller {
     struct steps steps;
     struct controller_probe probe;
     struct approach approach;
-    /* For comparison, of setpoints and of the feed: last, so that what is used in every cycle lies close together. */
+    /*
+     * For comparison, of setpoints and of the feed: last, so that what is used in every cycle lies
+     * close together.
+     */
     struct interpolator interpolator;
     struct product product;
 };

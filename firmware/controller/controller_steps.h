@@ -1,5 +1,6 @@
 /*
- * The axes of the machine that are driven by steps: the controller's other output. Inside this room.
+ * The axes of the machine that are driven by steps: the controller's other output. Inside this
+ * room.
  */
 #ifndef TAKT_CONTROLLER_CONTROLLER_STEPS_H
 #define TAKT_CONTROLLER_CONTROLLER_STEPS_H

@@ -1,12 +1,12 @@
 /*
- * What the spindle's feedback does to the feed: motion waits until it has reached its speed, and goes slower while it is
- * loaded beyond its limit.
+ * What the spindle's feedback does to the feed: motion waits until it has reached its speed, and
+ * goes slower while it is loaded beyond its limit.
  *
  *     load > limit    ratio falls by (load/limit - 1) / SPINDLE_FALL_S a second, not below SPINDLE_RATIO_MIN
  *     load <= limit   ratio rises by 1 / SPINDLE_RISE_S a second, up to 1
  *
- * Feeds per revolution go by the measured speed, smoothed over SPINDLE_SMOOTH_S; changes by less than SPINDLE_STEP of it
- * are not told.
+ * Feeds per revolution go by the measured speed, smoothed over SPINDLE_SMOOTH_S; changes by less
+ * than SPINDLE_STEP of it are not told.
  *
  * The ratio multiplies the feed override; acceleration and jerk of the change are the planner's.
  */

@@ -1,5 +1,6 @@
 /*
- * The handshake with a tool changer at I/O nodes: at M6 the program stands until it has been gone through.
+ * The handshake with a tool changer at I/O nodes: at M6 the program stands until it has been gone
+ * through.
  *
  *     tool_change   ____/^^^^^^^^^^^^^^^^^\___________
  *     tool_changed  ___________________/^^^^^^^\____
@@ -26,7 +27,10 @@ struct tool_changer {
 
 void takt_tool_changer_init(struct tool_changer *t, double cycle_s, double change_s);
 
-/* After a cycle: the program stands at a change; the answer. TOOL_CHANGE_SLOW: it has taken too long. */
+/*
+ * After a cycle: the program stands at a change; the answer. TOOL_CHANGE_SLOW: it has taken too
+ * long.
+ */
 enum takt_error takt_tool_changer_cycle(struct tool_changer *t, bool stands_at_change,
                                         bool is_changed);
 

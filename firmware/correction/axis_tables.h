@@ -1,7 +1,7 @@
 /*
- * Tables over one axis, ready for the control cycle: cubic splines through their points, which need not be evenly spaced.
- * Pitch corrects the axis itself, straightness and squareness another one; what differs with the direction of approach is
- * backlash.
+ * Tables over one axis, ready for the control cycle: cubic splines through their points, which need
+ * not be evenly spaced. Pitch corrects the axis itself, straightness and squareness another one;
+ * what differs with the direction of approach is backlash.
  */
 #ifndef TAKT_CORRECTION_AXIS_TABLES_H
 #define TAKT_CORRECTION_AXIS_TABLES_H
@@ -19,7 +19,9 @@
 #define AXIS_TABLES_POINTS_MAX 1024
 #endif
 
-/* From one point to the next: c[0] + t (c[1] + t (c[2] + t c[3])), t the distance from the point. */
+/*
+ * From one point to the next: c[0] + t (c[1] + t (c[2] + t c[3])), t the distance from the point.
+ */
 struct axis_piece {
     float mean[4];
     float half[4]; /* half the difference of the directions: up minus down */
@@ -44,15 +46,16 @@ struct axis_tables {
 };
 
 /*
- * Adds a table over one axis, which has passed takt_table_check; tables must not be moved afterwards. False: *wrong says why,
- * and nothing has changed.
+ * Adds a table over one axis, which has passed takt_table_check; tables must not be moved
+ * afterwards. False: *wrong says why, and nothing has changed.
  */
 bool takt_axis_tables_add(struct axis_tables *tables, const struct table *table,
                           struct diagnostic *wrong);
 
 /*
- * Adds weight times the corrections at a point to k, by axis. approach: of each axis, 1 when it comes from below, -1 from
- * above, between them while one fades into the other. Returns the inputs that are outside: bit i for axis i.
+ * Adds weight times the corrections at a point to k, by axis. approach: of each axis, 1 when it
+ * comes from below, -1 from above, between them while one fades into the other. Returns the inputs
+ * that are outside: bit i for axis i.
  */
 unsigned takt_axis_tables_sum(const struct axis_tables *tables, const struct point *at,
                               const float approach[AXIS_COUNT], float weight, float k[AXIS_COUNT]);

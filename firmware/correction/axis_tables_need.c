@@ -17,7 +17,10 @@ static void raise(double *most, double value)
     *most = maths_max(*most, maths_abs(value));
 }
 
-/* Value and slope of a cubic are largest where their absolute terms add; the second derivative at one of the ends. */
+/*
+ * Value and slope of a cubic are largest where their absolute terms add; the second derivative at
+ * one of the ends.
+ */
 static void add_cubic(struct cubic_bound *bound, const float c[4], double h)
 {
     const double c0 = maths_abs((double)c[0]);

@@ -13,8 +13,9 @@
 #define FADE_DONE_X 8.406
 
 /*
- * Bounds of responses to a target that jumps between 0 and 1 at the worst times: half the integral of the absolute
- * impulse response. In units of p, p^2, p^3 (tests/unit/test_correction_fade.c tries to exceed them).
+ * Bounds of responses to a target that jumps between 0 and 1 at the worst times: half the integral
+ * of the absolute impulse response. In units of p, p^2, p^3 (tests/unit/test_correction_fade.c
+ * tries to exceed them).
  */
 #define FADE_VELOCITY_MAX     0.28
 #define FADE_ACCELERATION_MAX 0.33

@@ -4,9 +4,9 @@
  *     tool:  v = tool + x_1 e_1 + ... as seen from unit u,    deviation += s_u + r_u x v
  *     part:  v likewise, u's own travel included,             deviation -= s_u + r_u x v
  *
- * s and r are shifts and turns of a unit in machine axes, x_i the positions of the units before it, e_i their directions.
- * Products of small numbers are left out. What the turning unit is off about its own axis is corrected there, and moves
- * nothing here.
+ * s and r are shifts and turns of a unit in machine axes, x_i the positions of the units before it,
+ * e_i their directions. Products of small numbers are left out. What the turning unit is off about
+ * its own axis is corrected there, and moves nothing here.
  */
 #include "correction/geometry.h"
 
@@ -18,7 +18,10 @@
 #define SIDE   AXIS_LINEAR_COUNT
 #define ERRORS (2 * SIDE)
 
-/* Squareness leans a linear axis: which coordinate it moves, by which of the angles, with which sign. */
+/*
+ * Squareness leans a linear axis: which coordinate it moves, by which of the angles, with which
+ * sign.
+ */
 static const struct lean {
     uint8_t axis, moved, angle;
     double sign;
@@ -83,7 +86,9 @@ static unsigned errors_of(const struct geometry *g, unsigned unit, const struct 
     return outside;
 }
 
-/* The turning unit: its turn about its own axis goes to that axis, the others act about its centre. */
+/*
+ * The turning unit: its turn about its own axis goes to that axis, the others act about its centre.
+ */
 static void add_turning(const struct geometry *g, unsigned unit, const struct point *at,
                         double e[ERRORS], double deviation[AXIS_COUNT])
 {

@@ -45,7 +45,10 @@ void takt_grid_set_weights(float t, float weight[STENCIL])
     weight[3] = t * t * t * (1.0F / 6.0F);
 }
 
-/* ---- the sum over the stencil: first over all inputs but the first, side by side along that one ---- */
+/*
+ * ---- the sum over the stencil: first over all inputs but the first, side by side along that one
+ * ----
+ */
 
 /* One column of a plane, over its rows. */
 static GRID_INLINE void add_column(const float *at, size_t row, const float *y, float z, lanes *sum)

@@ -1,8 +1,10 @@
 /*
- * A table over two to four axes, ready for the control cycle: the uniform cubic B-spline through its points.
+ * A table over two to four axes, ready for the control cycle: the uniform cubic B-spline through
+ * its points.
  *
- * Corrections are single precision, so that a processor with a single-precision unit evaluates them in hardware. Position
- * within a cell is reduced in double first. The four corrections are those of X, Y, Z and one rotary axis.
+ * Corrections are single precision, so that a processor with a single-precision unit evaluates them
+ * in hardware. Position within a cell is reduced in double first. The four corrections are those of
+ * X, Y, Z and one rotary axis.
  */
 #ifndef TAKT_CORRECTION_GRID_H
 #define TAKT_CORRECTION_GRID_H
@@ -40,9 +42,9 @@ struct grid_input {
 struct grid {
     unsigned inputs;    /* 2 ... TABLE_INPUTS_MAX; 0: no table */
     uint8_t components; /* bit i set: component i corrects something */
-    uint8_t
-        turn_axis; /* enum axis that component 3 corrects; AXIS_COUNT: none. The others are X, Y, Z */
-    size_t size;   /* coefficients of one component */
+    /* enum axis that component 3 corrects; AXIS_COUNT: none. The others are X, Y, Z */
+    uint8_t turn_axis;
+    size_t size;                               /* coefficients of one component */
     float bound[GRID_COMPONENTS][GRID_ORDERS]; /* of derivatives: grid_bound.h */
     /* For patches (grid_patch.h), which takt_grid_patch_set_pace sets. */
     float reach;   /* steps from where one is made to where it is good, all inputs together */
@@ -53,10 +55,16 @@ struct grid {
     float own[GRID_COEFFICIENTS_MAX]; /* of a spline that takt_grid_set has made */
 };
 
-/* Makes the spline; grid must not be moved afterwards. table has passed takt_table_check. False: it does not fit; *wrong says why. */
+/*
+ * Makes the spline; grid must not be moved afterwards. table has passed takt_table_check. False: it
+ * does not fit; *wrong says why.
+ */
 bool takt_grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong);
 
-/* Adds weight times the corrections at a point to k, by axis. Returns the inputs that are outside: bit i for axis i. */
+/*
+ * Adds weight times the corrections at a point to k, by axis. Returns the inputs that are outside:
+ * bit i for axis i.
+ */
 unsigned takt_grid_add(const struct grid *grid, const struct point *at, float weight,
                        float k[AXIS_COUNT]);
 

@@ -1,6 +1,7 @@
 /*
- * Bounds of a spline's derivatives: those of its coefficients' differences, because a derivative of a B-spline is the
- * B-spline of the differences, and a B-spline lies between its least and its largest coefficient.
+ * Bounds of a spline's derivatives: those of its coefficients' differences, because a derivative of
+ * a B-spline is the B-spline of the differences, and a B-spline lies between its least and its
+ * largest coefficient.
  */
 #include "correction/grid_bound.h"
 
@@ -14,7 +15,10 @@ struct grid_order {
 /* (-1)^(n-i) over i of n, of differences of up to third order. */
 static const float binomial[4][4] = {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}};
 
-/* What is summed along an input: count coefficients, from one that stands a little before or at the place. */
+/*
+ * What is summed along an input: count coefficients, from one that stands a little before or at the
+ * place.
+ */
 struct taps {
     unsigned count;
     unsigned before;
@@ -22,14 +26,16 @@ struct taps {
 };
 
 /*
- * At the ends of an input the outer coefficient stands for a place outside of the table, and is large where values are noisy.
- * The spline is read to t = -0.2 there and no further (edge.h), and all of it from there on lies between its value there,
+ * At the ends of an input the outer coefficient stands for a place outside of the table, and is
+ * large where values are noisy. The spline is read to t = -0.2 there and no further (edge.h), and
+ * all of it from there on lies between its value there,
  *
  *     0.288 c_0 + 0.62267 c_1 + 0.09067 c_2 - 0.00133 c_3     (1 - t)^3/6, (3 t^3 - 6 t^2 + 4)/6, ..., t^3/6
  *
- * and the next coefficients (de Boor's points of that piece are means of these with positive weights; C. de Boor, 1978,
- * chapter IX). The first derivative has the factor u' beyond the end: together they are at most 1.02 of the derivative at the
- * end, (c_2 - c_0)/2, and 0.18 of the differences behind it. So 1.25 of it, beside those, bounds both.
+ * and the next coefficients (de Boor's points of that piece are means of these with positive
+ * weights; C. de Boor, 1978, chapter IX). The first derivative has the factor u' beyond the end:
+ * together they are at most 1.02 of the derivative at the end, (c_2 - c_0)/2, and 0.18 of the
+ * differences behind it. So 1.25 of it, beside those, bounds both.
  */
 #define END_TAPS 4U
 static const float value_at_start[END_TAPS] = {0.288F, 0.622666667F, 0.0906666667F,
@@ -132,7 +138,10 @@ static void sort(unsigned *a, unsigned *b)
     *a = least;
 }
 
-/* Index of a <= b <= c, inputs or GRID_NO_INPUT, each number once: a + b (b + 1) / 2 + c (c + 1) (c + 2) / 6. */
+/*
+ * Index of a <= b <= c, inputs or GRID_NO_INPUT, each number once: a + b (b + 1) / 2 + c (c + 1) (c
+ * + 2) / 6.
+ */
 static unsigned index_of(unsigned a, unsigned b, unsigned c)
 {
     sort(&a, &b);

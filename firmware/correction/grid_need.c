@@ -6,8 +6,9 @@
 #include "correction/grid_patch.h"
 
 /*
- * Room for what is not bounded one by one: differences over whole cycles instead of derivatives, and second derivatives
- * of the hold at the edges in mixed terms. Only terms of second and third order have it, which are small.
+ * Room for what is not bounded one by one: differences over whole cycles instead of derivatives,
+ * and second derivatives of the hold at the edges in mixed terms. Only terms of second and third
+ * order have it, which are small.
  */
 #define NEED_MARGIN 2.0
 

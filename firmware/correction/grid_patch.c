@@ -1,13 +1,14 @@
 /*
- * With M the cycles that making a patch takes, B those of going over to it, and w the way of a cycle in steps, all inputs
- * together:
+ * With M the cycles that making a patch takes, B those of going over to it, and w the way of a
+ * cycle in steps, all inputs together:
  *
  *     make ---- M ----> go over - B -> use ---- M ----> go over - B ->
  *                       |<------------ a patch holds ------------->|
  *                                        A                              its anchor, (M / 2 + B) w from both ends
  *
- * when the axes go so fast that the next patch is needed as soon as it can be made; slower ones use a patch for as long as
- * it is good to GRID_PATCH_NEAR_MM. Axes too fast even for that, beyond GRID_PATCH_FAR, are corrected by the spline itself.
+ * when the axes go so fast that the next patch is needed as soon as it can be made; slower ones use
+ * a patch for as long as it is good to GRID_PATCH_NEAR_MM. Axes too fast even for that, beyond
+ * GRID_PATCH_FAR, are corrected by the spline itself.
  */
 #include "correction/grid_patch.h"
 
@@ -17,13 +18,14 @@
 #include "correction/grid_stencil.h"
 
 /*
- * Stages of making a patch after its anchor: its cell, its weights, then of each component the four lines of its stencil
- * and its terms.
+ * Stages of making a patch after its anchor: its cell, its weights, then of each component the four
+ * lines of its stencil and its terms.
  */
 enum { STAGE_NONE, STAGE_CELL, STAGE_WEIGHTS, STAGE_LINES };
 
 /*
- * Going over from one patch to the other in B = 8 cycles: what moves from 0 to 1 with the least third derivative,
+ * Going over from one patch to the other in B = 8 cycles: what moves from 0 to 1 with the least
+ * third derivative,
  *
  *     w = 16/3 t^3 for t <= 1/4,  1/2 + 2 u - 16/3 u^3 with u = t - 1/2 up to 3/4,  the first part backwards to 1
  *
@@ -33,7 +35,10 @@ enum { STAGE_NONE, STAGE_CELL, STAGE_WEIGHTS, STAGE_LINES };
 static const float share[GOING] = {0.0F,          1.0F / 96.0F,  8.0F / 96.0F,  25.0F / 96.0F,
                                    48.0F / 96.0F, 71.0F / 96.0F, 88.0F / 96.0F, 95.0F / 96.0F};
 
-/* Axes never come this many times as far as GRID_PATCH_FAR by moving: their place has been set anew. */
+/*
+ * Axes never come this many times as far as GRID_PATCH_FAR by moving: their place has been set
+ * anew.
+ */
 #define LOST_RATIO 2.0F
 
 #define W1 (2.0F / (float)GOING)
@@ -43,7 +48,9 @@ static const float share[GOING] = {0.0F,          1.0F / 96.0F,  8.0F / 96.0F,  
 /* The part of its reach at which a patch begins to hold when it is ready, at slow speeds. */
 #define AHEAD_RATIO 0.75F
 
-/* From the spline itself back to patches, the axes are slower than what patches can follow by this. */
+/*
+ * From the spline itself back to patches, the axes are slower than what patches can follow by this.
+ */
 #define CALM_RATIO 0.75F
 
 /* Third derivatives, all of them together, of all components. */
@@ -81,7 +88,10 @@ void takt_grid_patch_set_pace(struct grid *grid)
 
 /* ---- making a patch ---- */
 
-/* Sums over the second and third input, for derivatives (second, third): (0 0) (1 0) (0 1) (2 0) (1 1) (0 2). */
+/*
+ * Sums over the second and third input, for derivatives (second, third): (0 0) (1 0) (0 1) (2 0) (1
+ * 1) (0 2).
+ */
 enum { SUM, SUM_Y, SUM_Z, SUM_YY, SUM_YZ, SUM_ZZ };
 
 #define SUMS GRID_PATCH_SUMS
@@ -120,7 +130,10 @@ static void sum_line(const struct grid *grid, struct grid_patches *p, const floa
     p->sum[SUM_ZZ][x] = sum[SUM_ZZ];
 }
 
-/* A component's terms, from its sums at all places along the first input: of the orders 0, 1 and 2 by that. */
+/*
+ * A component's terms, from its sums at all places along the first input: of the orders 0, 1 and 2
+ * by that.
+ */
 static void set_terms(float sum[SUMS][STENCIL], const float *x, float *term)
 {
     for (unsigned sums = SUMS; sums != 0; sums /= 2U, x += STENCIL) {
@@ -236,7 +249,9 @@ static __attribute__((noinline)) unsigned hold_way(const struct grid *grid,
     return outside;
 }
 
-/* step: by how much the way differs from that of the last cycle. Returns inputs that are outside. */
+/*
+ * step: by how much the way differs from that of the last cycle. Returns inputs that are outside.
+ */
 static unsigned find_way(const struct grid *grid, struct grid_patch *patch, const struct point *at,
                          float step[GRID_PATCH_INPUTS])
 {
@@ -259,7 +274,10 @@ static void stand_for_spline(const struct grid *grid, struct grid_patch *patch,
     memset(patch->way, 0, sizeof(patch->way));
 }
 
-/* Begins the next patch if the one in use will have got worse than it may at slow speeds when that can be ready. */
+/*
+ * Begins the next patch if the one in use will have got worse than it may at slow speeds when that
+ * can be ready.
+ */
 static void look_ahead(const struct grid *grid, struct grid_patches *p, const struct point *at,
                        const float step[GRID_PATCH_INPUTS], float speed)
 {
@@ -346,8 +364,8 @@ static void follow(const struct grid *grid, struct grid_patches *p, const struct
 /* ---- evaluating ---- */
 
 /*
- * Taylor's series to the second order, in Horner's form. The value at the anchor comes last, so that what changes from
- * cycle to cycle is added up before it is rounded to the size of the whole.
+ * Taylor's series to the second order, in Horner's form. The value at the anchor comes last, so
+ * that what changes from cycle to cycle is added up before it is rounded to the size of the whole.
  */
 static GRID_INLINE float value_of(const float term[GRID_PATCH_TERMS], float x, float y, float z)
 {
@@ -421,7 +439,10 @@ float takt_grid_patch_jerk(const struct grid *grid, float third, float speed_per
     const float back = half - (float)GOING;
     const float fastest_per_s = grid->fastest / cycle_s;
     const float speed = speed_per_s < fastest_per_s ? speed_per_s : fastest_per_s;
-    /* For the difference of two patches, and of its derivatives by the cycle where w' and w'' are not small. */
+    /*
+     * For the difference of two patches, and of its derivatives by the cycle where w' and w'' are
+     * not small.
+     */
     const float size = (back * back * back + half * half * half) * (1.0F / 6.0F);
     const float first = (back + half) * ((float)GOING / 4.0F);
     const float second = back + half;

@@ -1,8 +1,8 @@
 /*
- * A grid over three axes, close to where it was evaluated last: value, first and second derivatives at an anchor (a
- * patch) stand for the spline as long as the axes stay near it, for a fraction of the cost. The next patch is made ahead
- * of where the axes go, a part of it in each cycle, while the last one holds; then one goes over into the other smoothly.
- * See README.md.
+ * A grid over three axes, close to where it was evaluated last: value, first and second derivatives
+ * at an anchor (a patch) stand for the spline as long as the axes stay near it, for a fraction of
+ * the cost. The next patch is made ahead of where the axes go, a part of it in each cycle, while
+ * the last one holds; then one goes over into the other smoothly. See README.md.
  */
 #ifndef TAKT_CORRECTION_GRID_PATCH_H
 #define TAKT_CORRECTION_GRID_PATCH_H
@@ -20,12 +20,15 @@
 #define GRID_PATCH_WEIGHTS 12
 
 /*
- * Error of a patch from which on a better one is made: what single precision rounds away of a correction of 0.1 mm. Axes
- * that stand, or creep, are corrected so well.
+ * Error of a patch from which on a better one is made: what single precision rounds away of a
+ * correction of 0.1 mm. Axes that stand, or creep, are corrected so well.
  */
 #define GRID_PATCH_NEAR_MM 4e-9
 
-/* A patch is used at most this many times as far as it is that good, by axes that go fast; its error there. */
+/*
+ * A patch is used at most this many times as far as it is that good, by axes that go fast; its
+ * error there.
+ */
 #define GRID_PATCH_FAR      18
 #define GRID_PATCH_ERROR_MM (GRID_PATCH_NEAR_MM * GRID_PATCH_FAR * GRID_PATCH_FAR * GRID_PATCH_FAR)
 
@@ -40,8 +43,8 @@ struct grid_patch {
 /* All 0: nothing is known yet. */
 struct grid_patches {
     struct grid_patch patch[2];
-    uint8_t
-        used; /* one of them; if it is not valid, its anchor is where the axes were in the last cycle */
+    /* one of them; if it is not valid, its anchor is where the axes were in the last cycle */
+    uint8_t used;
     uint8_t stage;           /* of making the other one, or of going over to it; 0: neither */
     uint8_t line, component; /* of it that come next */
     bool is_known;           /* where the axes were */
@@ -57,27 +60,34 @@ struct grid_patches {
 void takt_grid_patch_set_pace(struct grid *grid);
 
 /*
- * Once in every cycle before anything is added: makes the first patch. True: it is there, or the axes are too fast for any;
- * nothing has been done.
+ * Once in every cycle before anything is added: makes the first patch. True: it is there, or the
+ * axes are too fast for any; nothing has been done.
  */
 bool takt_grid_patch_prepare(const struct grid *grid, struct grid_patches *patches,
                              const struct point *at);
 
-/* As takt_grid_add, once in every cycle, within GRID_PATCH_ERROR_MM of it. Makes a part of the next patch. */
+/*
+ * As takt_grid_add, once in every cycle, within GRID_PATCH_ERROR_MM of it. Makes a part of the next
+ * patch.
+ */
 unsigned takt_grid_patch_add(const struct grid *grid, struct grid_patches *patches,
                              const struct point *at, float weight, float k[AXIS_COUNT]);
 
 /*
- * The jerk that one patch going over into the other takes of a corrected axis at most, mm/s3. third: its largest third
- * derivative by steps; speed_per_s: the largest of the axes, in steps, all together. Velocity and acceleration that it takes
- * are below GRID_PATCH_VELOCITY and GRID_PATCH_ACCELERATION of it, in cycles.
+ * The jerk that one patch going over into the other takes of a corrected axis at most, mm/s3.
+ * third: its largest third derivative by steps; speed_per_s: the largest of the axes, in steps, all
+ * together. Velocity and acceleration that it takes are below GRID_PATCH_VELOCITY and
+ * GRID_PATCH_ACCELERATION of it, in cycles.
  */
 #define GRID_PATCH_VELOCITY     4.0
 #define GRID_PATCH_ACCELERATION 2.0
 
 float takt_grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s);
 
-/* So much more than that of the spline the slope of a patch may be, mm per step: 3 error / distance. */
+/*
+ * So much more than that of the spline the slope of a patch may be, mm per step: 3 error /
+ * distance.
+ */
 static inline float grid_patch_slope(const struct grid *grid)
 {
     return (float)(3.0 * GRID_PATCH_ERROR_MM / GRID_PATCH_FAR) / grid->reach;

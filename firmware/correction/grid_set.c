@@ -37,8 +37,8 @@ static size_t offset_of(const struct grid *grid, const struct index *index)
 /* ---- one line: points 1 ... n of it hold values, and become coefficients 0 ... n + 1 ---- */
 
 /*
- * The spline has the value (c_{k-1} + 4 c_k + c_{k+1}) / 6 and the second derivative c_{k-1} - 2 c_k + c_{k+1} = M_k at
- * point k, so
+ * The spline has the value (c_{k-1} + 4 c_k + c_{k+1}) / 6 and the second derivative c_{k-1} - 2
+ * c_k + c_{k+1} = M_k at point k, so
  *
  *     c_k = f_k - M_k / 6,  c_{-1} = 2 c_0 - c_1 + M_0,  and the same at the other end
  */
@@ -64,8 +64,8 @@ static void transform_line(float *line, size_t stride, unsigned points)
 }
 
 /*
- * Goes to the next line along an input: other inputs before it are complete with margins, those behind it still without.
- * False: that was the last.
+ * Goes to the next line along an input: other inputs before it are complete with margins, those
+ * behind it still without. False: that was the last.
  */
 static bool next_line(const struct grid *grid, unsigned along, struct index *index)
 {

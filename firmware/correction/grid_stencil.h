@@ -19,8 +19,8 @@
 #define SECOND_ORDER (STENCIL + STENCIL)
 
 /*
- * Numbers side by side along the first input that are worked on at once, 1 or 4: as many as suit the processor. The bits
- * are the same. A build for a processor that has no vectors says 1.
+ * Numbers side by side along the first input that are worked on at once, 1 or 4: as many as suit
+ * the processor. The bits are the same. A build for a processor that has no vectors says 1.
  */
 #ifndef GRID_LANES
 #define GRID_LANES STENCIL
@@ -73,13 +73,16 @@ static GRID_INLINE void set_weights_second(float t, float weight[STENCIL])
     weight[3] = t * 0.5F;
 }
 
-/* The cell a point is in along one input: where it begins, and how far in it the point is, in steps. */
+/*
+ * The cell a point is in along one input: where it begins, and how far in it the point is, in
+ * steps.
+ */
 size_t takt_grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
                            unsigned *outside);
 
 /*
- * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it, and their first and half their second derivatives by t
- * (C. de Boor, 1978, chapter IX):
+ * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it, and their first and half their
+ * second derivatives by t (C. de Boor, 1978, chapter IX):
  *
  *     w0 = (1 - t)^3 / 6   w1 = (4 - 6 t^2 + 3 t^3) / 6   w2 = (1 + 3 t + 3 t^2 - 3 t^3) / 6   w3 = t^3 / 6
  *

@@ -6,7 +6,10 @@
 
 #include "correction/correction.h"
 
-/* The sum of all layers. Single precision is enough for what is at most a millimetre; a displaced part is not. */
+/*
+ * The sum of all layers. Single precision is enough for what is at most a millimetre; a displaced
+ * part is not.
+ */
 struct correction_sum {
     float fine[AXIS_COUNT];
     double *coarse;   /* by axis: begins with what is corrected, and fine comes on top */

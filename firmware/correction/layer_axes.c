@@ -1,11 +1,13 @@
 /*
- * Axis tables: pitch, straightness and squareness over one axis each, and backlash by the direction of approach.
+ * Axis tables: pitch, straightness and squareness over one axis each, and backlash by the direction
+ * of approach.
  *
- * The direction of an axis is that of its last motion. It counts as reversed when the axis has come back by
- * REVERSAL_MM from the furthest it went, so that rounding turns nothing; the tables of both directions then fade into
- * each other.
+ * The direction of an axis is that of its last motion. It counts as reversed when the axis has come
+ * back by REVERSAL_MM from the furthest it went, so that rounding turns nothing; the tables of both
+ * directions then fade into each other.
  *
- * Errors of units, which act along the machine's chain, are tables over one axis too, and taken back with them.
+ * Errors of units, which act along the machine's chain, are tables over one axis too, and taken
+ * back with them.
  */
 #include "base/assert.h"
 #include "correction/layer.h"

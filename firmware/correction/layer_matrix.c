@@ -3,8 +3,8 @@
  *
  *     K = machine U + workpiece (U - W) + overhang T = (machine + workpiece) U + (overhang T - workpiece W)
  *
- * over U = (X, Y, Z, psi). The second part is constant while part zero W and tool offset T are, and fades when a program
- * changes them. A diagonal machine matrix corrects the pitch of screws alone.
+ * over U = (X, Y, Z, psi). The second part is constant while part zero W and tool offset T are, and
+ * fades when a program changes them. A diagonal machine matrix corrects the pitch of screws alone.
  */
 #include "base/maths.h"
 #include "correction/layer.h"

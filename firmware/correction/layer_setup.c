@@ -1,11 +1,11 @@
 /*
- * Set-up: the part, or its pallet, stands displaced and turned. A rigid transform about a pivot P, which turns with the
- * table T(psi) that bears the part; P is then a point of the table's axis:
+ * Set-up: the part, or its pallet, stands displaced and turned. A rigid transform about a pivot P,
+ * which turns with the table T(psi) that bears the part; P is then a point of the table's axis:
  *
  *     K = T ((R - I) T^-1 (U - P) + offset),   R = R_z R_y R_x,   K_psi = turn
  *
- * The set-up is told with the table at psi = 0, and is what remains after the table has turned by K_psi.
- * A displacement may be millimetres, so this layer alone is summed in double precision.
+ * The set-up is told with the table at psi = 0, and is what remains after the table has turned by
+ * K_psi. A displacement may be millimetres, so this layer alone is summed in double precision.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -176,8 +176,8 @@ static struct need_jet way_of(const struct correction *c, unsigned j,
 }
 
 /*
- * What goes round with the table: once per turn the offset in its plane and what R - I does between plane and axis, twice
- * what of R - I is symmetric in the plane.
+ * What goes round with the table: once per turn the offset in its plane and what R - I does between
+ * plane and axis, twice what of R - I is symmetric in the plane.
  */
 static void add_waves(const struct correction *c, const struct setup *s,
                       const struct motion_bound *most, struct need *need)

@@ -4,15 +4,16 @@
  *     along = per_length L + per_time T     of its length: K = - along d
  *     across, likewise                      of its radius: K = across n
  *
- * d is the unit vector from the tool's point into its spindle: that of the settings, turned by the head. n is the unit
- * vector normal to the tool and to the way t, towards the contour, which is to the right of the path when the tool goes
- * left of it (G41), to the left with G42:
+ * d is the unit vector from the tool's point into its spindle: that of the settings, turned by the
+ * head. n is the unit vector normal to the tool and to the way t, towards the contour, which is to
+ * the right of the path when the tool goes left of it (G41), to the left with G42:
  *
  *     n = +- (t x d) / |t x d|
  *
  * Without compensation nobody knows the side, and nothing is done across.
  *
- * Length and time are counted per tool, on cutting moves. Corrections follow smoothly; d goes with the head at once.
+ * Length and time are counted per tool, on cutting moves. Corrections follow smoothly; d goes with
+ * the head at once.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -21,8 +22,8 @@
 #include <string.h>
 
 /*
- * Among the notes' numbers: 0 to 2 n; the tool; where the cycle before was; d with the head at 0. The coefficients are d;
- * the fades are those of K across, and of what is lost along.
+ * Among the notes' numbers: 0 to 2 n; the tool; where the cycle before was; d with the head at 0.
+ * The coefficients are d; the fades are those of K across, and of what is lost along.
  */
 #define TOOL   3
 #define BEFORE 4
@@ -132,7 +133,10 @@ static double way_of(const struct correction *c, struct layer_notes *notes,
     return length_of(step_mm);
 }
 
-/* n = t x d, not yet of unit length; with the sign that leads it towards the contour. Not 0: which side that is is known. */
+/*
+ * n = t x d, not yet of unit length; with the sign that leads it towards the contour. Not 0: which
+ * side that is is known.
+ */
 static double cross_path(const struct correction *c, const double t[AXIS_LINEAR_COUNT],
                          const float d[AXIS_LINEAR_COUNT], double n[AXIS_LINEAR_COUNT])
 {
@@ -151,7 +155,10 @@ static double cross_path(const struct correction *c, const double t[AXIS_LINEAR_
     return left ? right : -right;
 }
 
-/* n; 0 without compensation. It stays as it was where the way or the tool does not tell it. In notes->number. */
+/*
+ * n; 0 without compensation. It stays as it was where the way or the tool does not tell it. In
+ * notes->number.
+ */
 static void set_side(const struct correction *c, const double step_mm[AXIS_LINEAR_COUNT],
                      struct layer_notes *notes)
 {
@@ -207,7 +214,10 @@ static void wear_add(struct correction *c, struct layer_notes *notes, double wei
     }
 }
 
-/* A tool is changed before it has lost more than this; at a corner, wear across turns from one side to another. */
+/*
+ * A tool is changed before it has lost more than this; at a corner, wear across turns from one side
+ * to another.
+ */
 #define WEAR_MAX_MM 0.1
 
 /* A coordinate of d: a number, or a wave over the head's angle. */

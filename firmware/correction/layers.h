@@ -1,6 +1,6 @@
 /*
- * The layers of correction, in the order they are summed. A new layer is a file layer_NAME.c that defines
- * `const struct correction_layer layer_NAME`, and a line here.
+ * The layers of correction, in the order they are summed. A new layer is a file layer_NAME.c that
+ * defines `const struct correction_layer layer_NAME`, and a line here.
  */
 #ifndef TAKT_CORRECTION_LAYERS_H
 #define TAKT_CORRECTION_LAYERS_H

@@ -1,6 +1,6 @@
 /*
- * What correction takes of the axes' limits, at most: the share of velocity, acceleration and jerk that the planner has
- * to leave.
+ * What correction takes of the axes' limits, at most: the share of velocity, acceleration and jerk
+ * that the planner has to leave.
  */
 #ifndef TAKT_CORRECTION_NEED_H
 #define TAKT_CORRECTION_NEED_H
@@ -46,7 +46,10 @@ void takt_need_jet_add_travel(struct need_jet *jet, const struct motion_bound *m
 struct need_jet takt_need_jet_wave(double size, double times, const struct motion_bound *most,
                                    unsigned axis);
 
-/* Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1 a2 + 3 r2 a1 + r3 a. */
+/*
+ * Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1 a2
+ * + 3 r2 a1 + r3 a.
+ */
 void takt_need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
                            const struct need_jet *a);
 

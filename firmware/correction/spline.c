@@ -8,8 +8,8 @@ struct row {
 };
 
 /*
- * The first derivatives of two neighbouring pieces agree at their common knot (C. de Boor, A Practical Guide to
- * Splines, 1978, chapter IV):
+ * The first derivatives of two neighbouring pieces agree at their common knot (C. de Boor, A
+ * Practical Guide to Splines, 1978, chapter IV):
  *
  *     h_{i-1} M_{i-1} + 2 (h_{i-1} + h_i) M_i + h_i M_{i+1} = 6 ((y_{i+1} - y_i) / h_i - (y_i - y_{i-1}) / h_{i-1})
  */

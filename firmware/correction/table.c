@@ -4,13 +4,19 @@
 #include "base/decimal.h"
 #include "base/maths.h"
 
-/* Steps of a grid may differ by this part of a step: positions are written with a limited number of decimals. */
+/*
+ * Steps of a grid may differ by this part of a step: positions are written with a limited number of
+ * decimals.
+ */
 #define TABLE_UNEVEN_MAX 1e-3
 
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 #define NAME_PLACES     3
 
-/* More rows than any table can have: from here on they are not counted exactly, and nothing overflows. */
+/*
+ * More rows than any table can have: from here on they are not counted exactly, and nothing
+ * overflows.
+ */
 #define TABLE_ROWS_COUNTED UINT32_C(0x100000)
 _Static_assert(TABLE_VALUES_MAX < TABLE_ROWS_COUNTED, "tables are counted exactly");
 

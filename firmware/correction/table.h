@@ -1,9 +1,9 @@
 /*
- * A correction table as it is measured, written and stored: points of a grid over up to four axes, and at each of them
- * what is to be added to the commanded coordinates.
+ * A correction table as it is measured, written and stored: points of a grid over up to four axes,
+ * and at each of them what is to be added to the commanded coordinates.
  *
- * A table over one axis may tell the two directions of approach apart. Rows are in the order of the file: the first
- * input changes fastest.
+ * A table over one axis may tell the two directions of approach apart. Rows are in the order of the
+ * file: the first input changes fastest.
  */
 #ifndef TAKT_CORRECTION_TABLE_H
 #define TAKT_CORRECTION_TABLE_H
@@ -18,7 +18,10 @@
 #define TABLE_INPUTS_MAX  4
 #define TABLE_OUTPUTS_MAX 12
 
-/* Points along one input, and numbers in the whole table. A build with little memory may have fewer numbers. */
+/*
+ * Points along one input, and numbers in the whole table. A build with little memory may have fewer
+ * numbers.
+ */
 #define TABLE_KNOTS_MAX 256
 #ifndef TABLE_VALUES_MAX
 #define TABLE_VALUES_MAX 16384
@@ -52,13 +55,16 @@ struct table_rules {
 uint32_t takt_table_rows(const struct table *table);
 
 /*
- * All that can be wrong with numbers: axes, order, even steps of grids, magnitude, slope. False: *wrong has the first
- * cell that breaks a rule in its word ("X 150 Y 40: KZ"); its line is 0.
+ * All that can be wrong with numbers: axes, order, even steps of grids, magnitude, slope. False:
+ * *wrong has the first cell that breaks a rule in its word ("X 150 Y 40: KZ"); its line is 0.
  */
 bool takt_table_check(const struct table *table, const struct table_rules *rules,
                       struct diagnostic *wrong);
 
-/* Writes "X 150 Y 40: KZ" for a cell, "X 150 Y 40" when output is not below table->outputs. Zero-terminated. */
+/*
+ * Writes "X 150 Y 40: KZ" for a cell, "X 150 Y 40" when output is not below table->outputs.
+ * Zero-terminated.
+ */
 void takt_table_name_cell(const struct table *table, uint32_t row, unsigned output,
                           char name[DIAGNOSTIC_WORD_MAX + 1]);
 

@@ -89,7 +89,10 @@ static char small(char character)
     return letters[character - 'A'];
 }
 
-/* Length of word if the text has it at a place of this cell, else 0; letters of either case are the same. */
+/*
+ * Length of word if the text has it at a place of this cell, else 0; letters of either case are the
+ * same.
+ */
 static size_t match(const struct cells *c, size_t at, const char *word)
 {
     size_t length = 0;

@@ -26,7 +26,10 @@ void takt_cells_open(struct cells *c, const char *text, size_t length);
 /* Goes to the next line that is neither empty nor a comment. False: there is none. */
 bool takt_cells_next_line(struct cells *c);
 
-/* Goes to the next cell of the line. False: there is none. white: spaces separate cells, not commas. */
+/*
+ * Goes to the next cell of the line. False: there is none. white: spaces separate cells, not
+ * commas.
+ */
 bool takt_cells_next(struct cells *c, bool white);
 
 /* Does the current cell read so? */

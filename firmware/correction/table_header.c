@@ -21,7 +21,10 @@ static const struct unit units[] = {
     {"arcsec", true, true, DEGREE / 3600.0},
 };
 
-/* What the name of a column says: "KX_up_um" is a correction of X, up, in um; "EA_urad" a turn of a unit about X. */
+/*
+ * What the name of a column says: "KX_up_um" is a correction of X, up, in um; "EA_urad" a turn of a
+ * unit about X.
+ */
 struct column {
     bool correction;
     bool error; /* of a unit: E instead of K */

@@ -73,7 +73,10 @@ static bool add_knot(struct reader *r, unsigned input, double position)
     return true;
 }
 
-/* Goes to the next point along an input, which the row says or which is known. False: it is the first one again. */
+/*
+ * Goes to the next point along an input, which the row says or which is known. False: it is the
+ * first one again.
+ */
 static bool step_along(struct reader *r, unsigned input, double position)
 {
     const struct table *t = r->table;

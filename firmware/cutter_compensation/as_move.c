@@ -49,7 +49,10 @@ static void set_involute(struct move *m, const struct planar *way, const double 
     m->base_radius_mm = way->base_mm;
 }
 
-/* The motion of a contour's item, the tool's centre, or the point that a lathe tool is led by, going its way. */
+/*
+ * The motion of a contour's item, the tool's centre, or the point that a lathe tool is led by,
+ * going its way.
+ */
 static void finish_motion(struct cutter_compensation *o, const struct compensation_item *i,
                           struct move *m)
 {

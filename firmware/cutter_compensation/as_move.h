@@ -4,7 +4,10 @@
 
 #include "cutter_compensation/cutter_compensation.h"
 
-/* An item, the first of those that o has, as the move that it has become; o->at is where that begins. */
+/*
+ * An item, the first of those that o has, as the move that it has become; o->at is where that
+ * begins.
+ */
 void takt_compensation_as_move(struct cutter_compensation *o, const struct compensation_item *i,
                                struct move *m);
 

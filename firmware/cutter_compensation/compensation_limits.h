@@ -1,6 +1,7 @@
 /*
- * Every fixed size of the compensation, the same in all builds: what a contour comes to depends on them. struct cutter_compensation takes
- * about COMPENSATION_ITEMS_MAX * 80 + COMPENSATION_WAYS_MAX * 152 bytes.
+ * Every fixed size of the compensation, the same in all builds: what a contour comes to depends on
+ * them. struct cutter_compensation takes about COMPENSATION_ITEMS_MAX * 80 + COMPENSATION_WAYS_MAX
+ * * 152 bytes.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_LIMITS_H
 #define TAKT_CUTTER_COMPENSATION_LIMITS_H
@@ -19,16 +20,30 @@
 /* Turns of a compensated involute: what looks for crossings and distances looks at each of them. */
 #define COMPENSATION_TURNS_MAX 1000
 
-/* By this much of the radius the tool may cut into the contour: rounding, below anything a machine resolves. */
+/*
+ * By this much of the radius the tool may cut into the contour: rounding, below anything a machine
+ * resolves.
+ */
 #define COMPENSATION_GOUGE_MM 1e-9
-/* Outer corners whose tip is nearer than this to the arc around them stay sharp: they would be specks. */
+/*
+ * Outer corners whose tip is nearer than this to the arc around them stay sharp: they would be
+ * specks.
+ */
 #define COMPENSATION_BLUNT_MM 1e-6
-/* Near a turn of 180 degrees by this angle, the curvatures of both ways decide whether a corner is an inner one. */
+/*
+ * Near a turn of 180 degrees by this angle, the curvatures of both ways decide whether a corner is
+ * an inner one.
+ */
 #define COMPENSATION_CUSP_RAD 0.05
-/* Nearer than this they alone decide: the directions of a programmed cusp differ by its rounding. */
+/*
+ * Nearer than this they alone decide: the directions of a programmed cusp differ by its rounding.
+ */
 #define COMPENSATION_CUSP_SURE_RAD 1e-3
 
-/* Half of the last place that programs are written with: by so much the ends of their arcs are off the circles. */
+/*
+ * Half of the last place that programs are written with: by so much the ends of their arcs are off
+ * the circles.
+ */
 #define COMPENSATION_ROUNDING_MM 5e-4
 
 #endif

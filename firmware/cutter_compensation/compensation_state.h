@@ -1,5 +1,6 @@
 /*
- * Inside the compensation: public only so that the caller can own the memory. Read offset.h instead.
+ * Inside the compensation: public only so that the caller can own the memory. Read offset.h
+ * instead.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_STATE_H
 #define TAKT_CUTTER_COMPENSATION_STATE_H
@@ -13,7 +14,8 @@
 
 enum compensation_kind {
     COMPENSATION_COMMAND, /* no motion */
-    COMPENSATION_PASSING, /* a motion outside of any contour; it is alone, and struct cutter_compensation, pattern */
+    /* a motion outside of any contour; it is alone, and struct cutter_compensation, pattern */
+    COMPENSATION_PASSING,
     COMPENSATION_STANDING, /* motion of other axes than the plane's */
     COMPENSATION_CORNER,   /* way around an outer corner */
     COMPENSATION_WAY       /* a programmed move */
@@ -31,8 +33,8 @@ struct compensation_wanted {
 
 /* What a motion has of its own, beside its way. All else its contour has in common. */
 struct compensation_motion {
-    double across
-        [COMPENSATION_ACROSS]; /* ends of the axes that are not the plane's; the first is a linear one */
+    /* ends of the axes that are not the plane's; the first is a linear one */
+    double across[COMPENSATION_ACROSS];
     unsigned char pace[MOVE_PACE_BYTES];
 };
 
@@ -46,8 +48,8 @@ struct compensation_item {
     uint8_t path;       /* enum move_path */
     uint8_t overrides;  /* of struct move, as the next */
     uint8_t correction_off;
-    uint8_t
-        live; /* corners and ways that are not left out: where in struct cutter_compensation the rest is */
+    /* corners and ways that are not left out: where in struct cutter_compensation the rest is */
+    uint8_t live;
     bool cutter_entry : 1; /* of struct move */
     bool left_out : 1;     /* swallowed by an inner corner; kept until its end is known */
     bool entry : 1;        /* comes from outside the contour: starts where the tool is */
@@ -81,8 +83,8 @@ struct cutter_compensation {
     bool sharp_corners;
     struct compensation_item item[COMPENSATION_ITEMS_MAX]; /* ring */
     unsigned first, count;
-    struct compensation_live live
-        [COMPENSATION_WAYS_MAX]; /* ring: of corners and ways that are not left out, in their order */
+    /* ring: of corners and ways that are not left out, in their order */
+    struct compensation_live live[COMPENSATION_WAYS_MAX];
     unsigned live_first, ways;
     bool started;        /* a contour is being followed */
     bool gap;            /* an inner corner has begun and its end is not known */

@@ -1,14 +1,15 @@
 /*
- * Inner corners. The tool cannot follow both ways up to their common point: it leaves the first where its centre line
- * crosses that of the second.
+ * Inner corners. The tool cannot follow both ways up to their common point: it leaves the first
+ * where its centre line crosses that of the second.
  *
  *         k: ----------X- - - -            ways in between are swallowed when k and e cross before and behind
  *                       \                  them; then e may be far down the program and k far back
  *                    e:  \
  *
- * The newest piece of the contour is tried first, then those before it. When e crosses none of them it is swallowed
- * too and the next one is tried: the contour has a gap until one crosses. A crossing that would let the tool touch
- * what has been swallowed does not count. So a contour is either followed at the tool's radius or refused.
+ * The newest piece of the contour is tried first, then those before it. When e crosses none of them
+ * it is swallowed too and the next one is tried: the contour has a gap until one crosses. A
+ * crossing that would let the tool touch what has been swallowed does not count. So a contour is
+ * either followed at the tool's radius or refused.
  */
 #include "cutter_compensation/contour.h"
 
@@ -31,8 +32,8 @@
 struct crossing {
     double point[2];
     double end_mm, begin_mm; /* places on the first and on the second */
-    bool
-        far; /* another one is nearer to their corner: this one may belong to the other end of an arc */
+    /* another one is nearer to their corner: this one may belong to the other end of an arc */
+    bool far;
 };
 
 struct compensation_item *takt_contour_item(struct cutter_compensation *o, unsigned place)
@@ -175,8 +176,8 @@ static bool is_within(const struct planar *k, const struct planar *e, const stru
 }
 
 /*
- * How far the crossing is from the common corner along both ways. In a cusp there are two at the same distance: the
- * one within both ways comes first.
+ * How far the crossing is from the common corner along both ways. In a cusp there are two at the
+ * same distance: the one within both ways comes first.
  */
 static double cut_mm(const struct planar *k, const struct planar *e, const struct crossing *c)
 {
@@ -255,7 +256,10 @@ struct trial {
     struct planar k, e;
 };
 
-/* The tool's path turns to the tool's side in an inner corner; another crossing leads into the contour. */
+/*
+ * The tool's path turns to the tool's side in an inner corner; another crossing leads into the
+ * contour.
+ */
 static bool turns_inside(const struct cutter_compensation *o, const struct trial *t)
 {
     double before[2];
@@ -268,7 +272,10 @@ static bool turns_inside(const struct cutter_compensation *o, const struct trial
     return (o->pattern.cutter_side == CUTTER_LEFT ? turn : -turn) >= -TURN_SLACK;
 }
 
-/* How far the tool cuts into a programmed way on the corner before a place, and on the way before that. */
+/*
+ * How far the tool cuts into a programmed way on the corner before a place, and on the way before
+ * that.
+ */
 static double gouge_before(struct cutter_compensation *o, unsigned place,
                            const struct planar *wanted, double radius_mm)
 {
@@ -288,8 +295,9 @@ static double gouge_before(struct cutter_compensation *o, unsigned place,
 }
 
 /*
- * What the tool would cut away of everything from place on when the piece there and the new one meet at the crossing;
- * nothing to worry about when they are neighbours and it is the one at their corner.
+ * What the tool would cut away of everything from place on when the piece there and the new one
+ * meet at the crossing; nothing to worry about when they are neighbours and it is the one at their
+ * corner.
  */
 static double gouge_behind(struct cutter_compensation *o, unsigned place,
                            const struct compensation_item *piece, const struct trial *t,
@@ -385,7 +393,10 @@ static bool join_at(struct cutter_compensation *o, unsigned place, struct compen
     return false;
 }
 
-/* at_corner: the piece begins where the contour's last one ends, in an inner corner. False: it crosses none. */
+/*
+ * at_corner: the piece begins where the contour's last one ends, in an inner corner. False: it
+ * crosses none.
+ */
 static bool join(struct cutter_compensation *o, struct compensation_piece *piece, bool at_corner)
 {
     const struct compensation_live *newest = at_corner && !o->gap ? takt_contour_newest(o) : NULL;

@@ -1,5 +1,6 @@
 /*
- * The contour being followed: pieces of way that may still change, in order, with the commands between them.
+ * The contour being followed: pieces of way that may still change, in order, with the commands
+ * between them.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_CONTOUR_H
 #define TAKT_CUTTER_COMPENSATION_CONTOUR_H
@@ -30,14 +31,15 @@ void takt_contour_drop_first(struct cutter_compensation *o);
 struct compensation_live *takt_contour_newest(struct cutter_compensation *o);
 
 /*
- * Adds a piece that goes on where the newest ends, or, after an inner corner, where it crosses one of the contour; it then
- * begins there. A way that crosses none is swallowed, a corner then forgotten.
+ * Adds a piece that goes on where the newest ends, or, after an inner corner, where it crosses one
+ * of the contour; it then begins there. A way that crosses none is swallowed, a corner then
+ * forgotten.
  */
 void takt_contour_continue(struct cutter_compensation *o, struct compensation_piece *piece);
 
 /*
- * The same for a way behind an inner corner at the start of the programmed way. False: it crosses none, and nothing has
- * changed.
+ * The same for a way behind an inner corner at the start of the programmed way. False: it crosses
+ * none, and nothing has changed.
  */
 bool takt_contour_meet_inside(struct cutter_compensation *o, struct compensation_piece *piece);
 

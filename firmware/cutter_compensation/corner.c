@@ -1,11 +1,12 @@
 /*
- * Corners. With the directions t before and u behind a corner V, and the tool at the distance d to the left:
+ * Corners. With the directions t before and u behind a corner V, and the tool at the distance d to
+ * the left:
  *
  *     angle = atan2(t x u, t . u)       > 0: the path turns left, so with d > 0 this is an inner corner
  *
- * Around an outer corner the tool's centre goes from V + d n(t) to V + d n(u), n the normal to the left, on a circle
- * about V, or along tangents to this circle: then the tips stand off by d / cos(angle / 2 k), k = 1, or 2 for turns of
- * more than 90 degrees.
+ * Around an outer corner the tool's centre goes from V + d n(t) to V + d n(u), n the normal to the
+ * left, on a circle about V, or along tangents to this circle: then the tips stand off by d /
+ * cos(angle / 2 k), k = 1, or 2 for turns of more than 90 degrees.
  */
 #include "cutter_compensation/corner.h"
 
@@ -30,9 +31,10 @@ static bool is_inner(double angle_rad, double left_mm)
 }
 
 /*
- * Where a way returns along itself the directions alone do not tell which side the tool is on: of the two ways, seen
- * from the corner, the one behind it is to the left of the one before when curvature before + curvature behind > 0. Then the path
- * has turned right. Both must say "outer"; if the directions differ by rounding alone, the curvatures decide.
+ * Where a way returns along itself the directions alone do not tell which side the tool is on: of
+ * the two ways, seen from the corner, the one behind it is to the left of the one before when
+ * curvature before + curvature behind > 0. Then the path has turned right. Both must say "outer";
+ * if the directions differ by rounding alone, the curvatures decide.
  */
 static bool cusp_is_inner(double curvature, double left_mm, double angle_rad)
 {
@@ -52,8 +54,9 @@ static double other_way(double angle_rad)
 }
 
 /*
- * Directions that say inner beside curvatures that say outer: the ways enclose a lens, and then cross. A tool of the radius r that
- * goes around their corner cuts into it, at the place x from there, by
+ * Directions that say inner beside curvatures that say outer: the ways enclose a lens, and then
+ * cross. A tool of the radius r that goes around their corner cuts into it, at the place x from
+ * there, by
  *
  *     x off - x^2 (curvature + 1 / r) / 2 <= off^2 / (2 (curvature + 1 / r))
  */
@@ -96,7 +99,9 @@ static struct corner corner_between(const struct cutter_compensation *o,
     return c;
 }
 
-/* The point beside the vertex, at a distance to the left of the way before it turned by an angle. */
+/*
+ * The point beside the vertex, at a distance to the left of the way before it turned by an angle.
+ */
 static void point_beside(const struct corner *c, double angle_rad, double left_mm, double point[2])
 {
     double sine;
@@ -120,14 +125,16 @@ static bool is_blunt(const struct corner *c)
 }
 
 /*
- * Where two ways cross beside a blunt corner, into point, which holds the corner's middle; ways that only touch leave it
- * there. A circle is crossed twice. With its programmed radius R, that of the tool's way r = R +- d and the corner's angle
- * a, seen from where the circle is parallel to the other way, of a line:
+ * Where two ways cross beside a blunt corner, into point, which holds the corner's middle; ways
+ * that only touch leave it there. A circle is crossed twice. With its programmed radius R, that of
+ * the tool's way r = R +- d and the corner's angle a, seen from where the circle is parallel to the
+ * other way, of a line:
  *
  *     crossings   +- a sqrt(R r)
  *     middle      a (R + r) / 2
  *
- * So the nearer one is at most a d / 2 from the middle. At the other one the tool would cut the circle off.
+ * So the nearer one is at most a d / 2 from the middle. At the other one the tool would cut the
+ * circle off.
  */
 static void cross_beside(const struct planar *k, const struct planar *e, const struct corner *c,
                          double point[2])
@@ -155,8 +162,8 @@ static bool is_near_vertex(const struct corner *c, const double point[2])
 }
 
 /*
- * A corner so blunt that one point serves both ways. False when there is not enough of one of them, or when the point
- * is too far out, as it can be beside a small circle.
+ * A corner so blunt that one point serves both ways. False when there is not enough of one of them,
+ * or when the point is too far out, as it can be beside a small circle.
  */
 static bool turn_blunt(struct cutter_compensation *o, struct compensation_piece *next,
                        const struct corner *c)
@@ -182,7 +189,10 @@ static bool turn_blunt(struct cutter_compensation *o, struct compensation_piece 
     return true;
 }
 
-/* A corner is part of the move behind it, but the axis across the plane stays, and the programmed way is the one before. */
+/*
+ * A corner is part of the move behind it, but the axis across the plane stays, and the programmed
+ * way is the one before.
+ */
 static struct compensation_piece corner_piece(const struct cutter_compensation *o,
                                               const struct compensation_piece *next)
 {
@@ -240,8 +250,8 @@ static void turn_sharp(struct cutter_compensation *o, struct compensation_piece 
 }
 
 /*
- * A rapid has no feed for an arc and nothing to cut: it goes around corners in lines. Behind a gap tips are not tried:
- * one may stand out of what is swallowed while the circle does not.
+ * A rapid has no feed for an arc and nothing to cut: it goes around corners in lines. Behind a gap
+ * tips are not tried: one may stand out of what is swallowed while the circle does not.
  */
 static void turn_outside(struct cutter_compensation *o, const struct compensation_piece *next,
                          const struct corner *c)

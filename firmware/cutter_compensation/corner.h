@@ -7,8 +7,8 @@
 #include "cutter_compensation/contour.h"
 
 /*
- * Goes on from the contour's last programmed way to the next one: around an outer corner, through an inner one, or
- * straight on. left_mm: the radius, negative on the right side.
+ * Goes on from the contour's last programmed way to the next one: around an outer corner, through
+ * an inner one, or straight on. left_mm: the radius, negative on the right side.
  */
 void takt_corner_turn(struct cutter_compensation *o, struct compensation_piece *next,
                       double left_mm);

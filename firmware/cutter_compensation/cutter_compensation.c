@@ -67,8 +67,8 @@ static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, doub
 }
 
 /*
- * An entry arc starts at the tool, C, and ends at A beside the programmed end, in its direction: its centre is on the
- * line from A towards the programmed centre, u, and as far from C as from A.
+ * An entry arc starts at the tool, C, and ends at A beside the programmed end, in its direction:
+ * its centre is on the line from A towards the programmed centre, u, and as far from C as from A.
  *
  *     |A B| = |C - A|^2 / (2 (C - A) . u)
  */
@@ -231,7 +231,10 @@ static bool is_dropped(struct cutter_compensation *o, const struct move *m)
     return dropped;
 }
 
-/* No more comes to the contour. A gap that is still open then is a place the tool does not fit into. */
+/*
+ * No more comes to the contour. A gap that is still open then is a place the tool does not fit
+ * into.
+ */
 static bool close_contour(struct cutter_compensation *o, struct diagnostic *d)
 {
     o->closed = true;
@@ -407,7 +410,9 @@ static enum program_result read_on(struct cutter_compensation *o, struct program
     return PROGRAM_END;
 }
 
-/* Nothing is kept back: what is not compensated goes through. PROGRAM_MOVE and *taken: it does not. */
+/*
+ * Nothing is kept back: what is not compensated goes through. PROGRAM_MOVE and *taken: it does not.
+ */
 static enum program_result pass_through(struct cutter_compensation *o, struct program *p,
                                         struct move *move, struct diagnostic *d, bool *taken)
 {

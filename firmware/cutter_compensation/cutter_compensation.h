@@ -3,8 +3,8 @@
  *
  *     takt_program_next -> [ way | corner | way | ... ] -> takt_cutter_compensation_next
  *
- * Moves without compensation pass unchanged and undelayed. The caller owns struct cutter_compensation and reads the program through
- * it alone.
+ * Moves without compensation pass unchanged and undelayed. The caller owns struct
+ * cutter_compensation and reads the program through it alone.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_H
 #define TAKT_CUTTER_COMPENSATION_H
@@ -17,8 +17,9 @@ void takt_cutter_compensation_open(struct cutter_compensation *o,
                                    const struct program_config *config);
 
 /*
- * The next move, with the contract of takt_program_next: after PROGRAM_ERROR reading may go on; what is left of a contour
- * with an error is dropped. PROGRAM_WAIT comes when everything before it has been given out.
+ * The next move, with the contract of takt_program_next: after PROGRAM_ERROR reading may go on;
+ * what is left of a contour with an error is dropped. PROGRAM_WAIT comes when everything before it
+ * has been given out.
  */
 enum program_result takt_cutter_compensation_next(struct cutter_compensation *o, struct program *p,
                                                   struct move *move, struct diagnostic *diagnostic);
@@ -27,7 +28,10 @@ enum program_result takt_cutter_compensation_next(struct cutter_compensation *o,
 void takt_cutter_compensation_answer(struct cutter_compensation *o, struct program *p,
                                      const struct program_answer *answer);
 
-/* Warnings since the last call: true and *diagnostic while there are any; those of the program come elsewhere. */
+/*
+ * Warnings since the last call: true and *diagnostic while there are any; those of the program come
+ * elsewhere.
+ */
 bool takt_cutter_compensation_warning(struct cutter_compensation *o, struct diagnostic *diagnostic);
 
 #endif

@@ -1,6 +1,7 @@
 /*
- * Lathe tools are led by a point beside the centre of their nose, where the nose would end if it were square. The
- * contour is compensated for the nose's centre; the moves given out are those of the point that is led.
+ * Lathe tools are led by a point beside the centre of their nose, where the nose would end if it
+ * were square. The contour is compensated for the nose's centre; the moves given out are those of
+ * the point that is led.
  *
  *     3   8   4       the orientation names where that point lies, X up and Z to the right: by the radius along X,
  *     7   9   5       along Z, or both. At 9 and at 0, which mills have, it is the centre itself.

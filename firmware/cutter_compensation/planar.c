@@ -7,7 +7,9 @@
 
 #include <string.h>
 
-/* Start and end of an arc closer than this are one point: a full circle (as in the room geometry). */
+/*
+ * Start and end of an arc closer than this are one point: a full circle (as in the room geometry).
+ */
 #define CLOSED_MM 1e-7
 
 /* Ways shorter than this are none. */

@@ -1,6 +1,7 @@
 /*
- * A piece of contour in its plane: a line, an arc or an involute, with the operations compensation needs. Coordinates are the first
- * and second axis of the plane, mm. Left is left of the way when the third axis points at the observer.
+ * A piece of contour in its plane: a line, an arc or an involute, with the operations compensation
+ * needs. Coordinates are the first and second axis of the plane, mm. Left is left of the way when
+ * the third axis points at the observer.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_PLANAR_H
 #define TAKT_CUTTER_COMPENSATION_PLANAR_H
@@ -49,8 +50,8 @@ double takt_planar_curvature_from(const struct planar *c);
 double takt_planar_curvature_to(const struct planar *c);
 
 /*
- * The same piece moved left by left_mm, which may be negative. False when an arc or an involute would have no radius
- * left; *lack_mm is then how much its radius is too small.
+ * The same piece moved left by left_mm, which may be negative. False when an arc or an involute
+ * would have no radius left; *lack_mm is then how much its radius is too small.
  */
 bool takt_planar_offset(const struct planar *c, double left_mm, struct planar *result,
                         double *lack_mm);
@@ -58,12 +59,14 @@ bool takt_planar_offset(const struct planar *c, double left_mm, struct planar *r
 double takt_planar_length(const struct planar *c);
 
 /*
- * Where a point of the way's line or circle lies on it, in mm from its start: negative before it. On an arc the place
- * nearest to its middle, so of places a turn apart one is chosen.
+ * Where a point of the way's line or circle lies on it, in mm from its start: negative before it.
+ * On an arc the place nearest to its middle, so of places a turn apart one is chosen.
  */
 double takt_planar_place(const struct planar *c, const double point[2]);
 
-/* The same, on an arc of more than half a turn the place that belongs to its end, or to its start. */
+/*
+ * The same, on an arc of more than half a turn the place that belongs to its end, or to its start.
+ */
 double takt_planar_place_near_to(const struct planar *c, const double point[2]);
 double takt_planar_place_near_from(const struct planar *c, const double point[2]);
 
@@ -72,8 +75,8 @@ void takt_planar_end_at(struct planar *c, double place_mm, const double point[2]
 void takt_planar_begin_at(struct planar *c, double place_mm, const double point[2]);
 
 /*
- * Where the lines or circles of two ways cross, no matter how long the ways are: 0 to 2 points. Of an arc with two
- * radii the circle of its end counts for a, that of its start for b.
+ * Where the lines or circles of two ways cross, no matter how long the ways are: 0 to 2 points. Of
+ * an arc with two radii the circle of its end counts for a, that of its start for b.
  */
 unsigned takt_planar_cross(const struct planar *a, const struct planar *b, double points[2][2]);
 

@@ -1,6 +1,7 @@
 /*
- * Distances between ways. The nearest points of two ways are a crossing, an end of one of them, or, when an arc is
- * one of them, on the line through its centre at right angles to the other way. Involutes: planar_involute.c.
+ * Distances between ways. The nearest points of two ways are a crossing, an end of one of them, or,
+ * when an arc is one of them, on the line through its centre at right angles to the other way.
+ * Involutes: planar_involute.c.
  */
 #include "base/maths.h"
 #include "cutter_compensation/planar_involute.h"
@@ -73,7 +74,10 @@ static bool do_cross(const struct planar *a, const struct planar *b)
     return false;
 }
 
-/* Smallest distance of both points of an arc that lie on a line through its centre from another way. */
+/*
+ * Smallest distance of both points of an arc that lie on a line through its centre from another
+ * way.
+ */
 static double distance_along(const struct planar *arc, const double direction[2],
                              const struct planar *other)
 {

@@ -1,5 +1,6 @@
 /*
- * The point at the unrolled angle phi, the string at the angle t = heading + h phi from the base circle's centre C:
+ * The point at the unrolled angle phi, the string at the angle t = heading + h phi from the base
+ * circle's centre C:
  *
  *     P = C + r [(cos t, sin t) + h phi (sin t, -cos t)]
  *
@@ -21,9 +22,14 @@
 
 #include <string.h>
 
-/* Crossings are looked for so far beyond the ends: more than one point of a blunt corner can need. */
+/*
+ * Crossings are looked for so far beyond the ends: more than one point of a blunt corner can need.
+ */
 #define BEYOND_MM 0.05
-/* Base circles nearer than this to concentric have all normals in common: the ends then tell the distance. */
+/*
+ * Base circles nearer than this to concentric have all normals in common: the ends then tell the
+ * distance.
+ */
 #define CONCENTRIC_MM 1e-9
 #define BISECTIONS    60
 #define ANGLES_MAX    4
@@ -126,7 +132,10 @@ double takt_planar_involute_unrolled(const struct planar *c, double place_mm)
                                          2.0 * way_of(c) * place_mm / c->base_mm));
 }
 
-/* The string touches the base circle and is r' from another centre, on either side: cos(t - b) = (r -+ r') / D. */
+/*
+ * The string touches the base circle and is r' from another centre, on either side: cos(t - b) = (r
+ * -+ r') / D.
+ */
 static void add_through(struct angles *a, const struct planar *c, const double centre[2],
                         double distance_mm)
 {
@@ -184,7 +193,9 @@ static double next_turn(const struct planar *c, const struct angles *a, bool sho
     return next;
 }
 
-/* How far a point is to one side of the other way, with a sign. False: that cannot be told there. */
+/*
+ * How far a point is to one side of the other way, with a sign. False: that cannot be told there.
+ */
 static bool side_of(const struct search *s, double phi, double *side_mm)
 {
     const struct planar *other = s->other;

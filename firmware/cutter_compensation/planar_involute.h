@@ -6,7 +6,10 @@
 
 void takt_planar_involute_tangent(const struct planar *c, double unrolled_rad, double result[2]);
 double takt_planar_involute_curvature(const struct planar *c, double unrolled_rad);
-/* The same moved left: left of the way, as everywhere. Returns the smaller radius of curvature, negative: none. */
+/*
+ * The same moved left: left of the way, as everywhere. Returns the smaller radius of curvature,
+ * negative: none.
+ */
 double takt_planar_involute_offset(struct planar *c, double left_mm);
 double takt_planar_involute_length(const struct planar *c);
 double takt_planar_involute_place(const struct planar *c, const double point[2]);
@@ -14,8 +17,9 @@ double takt_planar_involute_place(const struct planar *c, const double point[2])
 double takt_planar_involute_unrolled(const struct planar *c, double place_mm);
 
 /*
- * Where an involute crosses another way, whose circle has that radius if it is an arc: of all places within both, or
- * beyond their ends by a little, the two nearest to the involute's end, or to its start.
+ * Where an involute crosses another way, whose circle has that radius if it is an arc: of all
+ * places within both, or beyond their ends by a little, the two nearest to the involute's end, or
+ * to its start.
  */
 unsigned takt_planar_involute_cross(const struct planar *c, const struct planar *other,
                                     double radius_mm, bool near_end, double points[2][2]);

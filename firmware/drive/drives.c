@@ -112,8 +112,8 @@ void takt_drives_init(struct drives *d, const struct drives_config *config)
 }
 
 /*
- * Setpoints that do not get through any more, or are none, cannot be followed to rest; and where a switch says stop, or a
- * gantry is about to rack, rest comes before the path.
+ * Setpoints that do not get through any more, or are none, cannot be followed to rest; and where a
+ * switch says stop, or a gantry is about to rack, rest comes before the path.
  */
 static bool cuts_off(enum takt_error error)
 {

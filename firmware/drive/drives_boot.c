@@ -1,9 +1,11 @@
 /*
- * What the master asks a drive before it is started, and what it tells it beside its process data (drives_map.c): who it
- * is, in which mode it follows targets, how it is scaled; when its heartbeat is due, how it stops, how it finds its home.
+ * What the master asks a drive before it is started, and what it tells it beside its process data
+ * (drives_map.c): who it is, in which mode it follows targets, how it is scaled; when its heartbeat
+ * is due, how it stops, how it finds its home.
  *
- * Hardly anything of that is required. What a drive refuses to be told is read, for it may be so already; if it is not,
- * it is given up (enum drives_given_up), or the one thing that cannot be done without is a fault.
+ * Hardly anything of that is required. What a drive refuses to be told is read, for it may be so
+ * already; if it is not, it is given up (enum drives_given_up), or the one thing that cannot be
+ * done without is a fault.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -53,7 +55,10 @@ bool takt_drives_next_ask(struct drives *d, struct drives_step *step)
     return true;
 }
 
-/* A node of another type is a drive all the same, if it tells modes or names no profile: see take_modes. */
+/*
+ * A node of another type is a drive all the same, if it tells modes or names no profile: see
+ * take_modes.
+ */
 static void take_type(struct drives *d, const struct drives_answer *answer)
 {
     const bool is_told = answer->abort_code == SDO_ABORT_NONE;
@@ -94,8 +99,8 @@ static bool is_something_else(uint32_t type)
 }
 
 /*
- * The best mode it has; one that does not tell is tried in cyclic synchronous position, and if it has no target position in
- * profile velocity, unless it is something else.
+ * The best mode it has; one that does not tell is tried in cyclic synchronous position, and if it
+ * has no target position in profile velocity, unless it is something else.
  */
 static void take_modes(struct drives *d, const struct drives_answer *answer)
 {
@@ -119,9 +124,11 @@ static void take_modes(struct drives *d, const struct drives_answer *answer)
 }
 
 /*
- * Position units in a turn of the motor, CiA 402-2, 6091 and 6092; by an encoder alone where there is no feed constant:
+ * Position units in a turn of the motor, CiA 402-2, 6091 and 6092; by an encoder alone where there
+ * is no feed constant:
  *     units = feed / shaft turns * shaft turns / motor turns      or      increments / motor turns
- * 0: the drive does not tell. Its objects are whole numbers: *rounding is what half a unit of the first makes of units.
+ * 0: the drive does not tell. Its objects are whole numbers: *rounding is what half a unit of the
+ * first makes of units.
  */
 static double units_per_turn(const uint32_t read[6], double *rounding)
 {
@@ -212,8 +219,8 @@ static const struct setting settings[] = {
 #define SET_COUNT (sizeof settings / sizeof settings[0])
 
 /*
- * Object 60C2: period = value * 10^exponent seconds, the value a byte. The largest unit that is exact; a period that
- * has none is rounded in the smallest unit that holds it.
+ * Object 60C2: period = value * 10^exponent seconds, the value a byte. The largest unit that is
+ * exact; a period that has none is rounded in the smallest unit that holds it.
  */
 static void split_period(uint32_t cycle_us, uint32_t *value, int *exponent)
 {
@@ -234,8 +241,8 @@ static uint32_t velocity_of(const struct drives_config_axis *config, double valu
 }
 
 /*
- * Ramps of profile velocity: twice as steep as setpoints are, so that they do not round these off, and leave as much to
- * the position loop.
+ * Ramps of profile velocity: twice as steep as setpoints are, so that they do not round these off,
+ * and leave as much to the position loop.
  */
 static uint32_t ramp_of(const struct drives_config_axis *config)
 {
@@ -243,8 +250,8 @@ static uint32_t ramp_of(const struct drives_config_axis *config)
 }
 
 /*
- * CiA 402: zero = home + home offset. So the offset is minus the coordinate that home is to have. There are drives whose
- * position at home is the offset.
+ * CiA 402: zero = home + home offset. So the offset is minus the coordinate that home is to have.
+ * There are drives whose position at home is the offset.
  */
 static uint32_t home_offset_of(const struct drives_config_axis *config)
 {
@@ -321,8 +328,8 @@ static bool is_too_slow(const struct drives *d, const struct drives_answer *answ
 }
 
 /*
- * The drive has this value, and ours is another, or it could not be read. Without an object there is nothing to be done
- * where that is as good: 0, or the identifier that SYNC has without it.
+ * The drive has this value, and ours is another, or it could not be read. Without an object there
+ * is nothing to be done where that is as good: 0, or the identifier that SYNC has without it.
  */
 static void miss(struct drives *d, const struct drives_answer *answer)
 {
@@ -345,8 +352,9 @@ static void take_back(struct drives *d, enum drives_given_up what)
 }
 
 /*
- * What stands in for a heartbeat. read: 1017; then 100C, 0 where there is none, and the time after which the drive takes us for
- * lost, 100C times 100D. Where that is too short the drive is better left alone.
+ * What stands in for a heartbeat. read: 1017; then 100C, 0 where there is none, and the time after
+ * which the drive takes us for lost, 100C times 100D. Where that is too short the drive is better
+ * left alone.
  */
 static void take_guard(struct drives *d, uint32_t factor)
 {
@@ -362,8 +370,8 @@ static void take_guard(struct drives *d, uint32_t factor)
 }
 
 /*
- * A drive that keeps a time between targets of its own makes its motion of it: a longer one lags behind, a shorter one
- * stops between targets. With 0 it takes the time as it comes.
+ * A drive that keeps a time between targets of its own makes its motion of it: a longer one lags
+ * behind, a shorter one stops between targets. With 0 it takes the time as it comes.
  */
 static void check_period(struct drives *d)
 {

@@ -7,7 +7,10 @@
 #include "canopen/emcy.h"
 #include "drive/drives_private.h"
 
-/* A drive stands when in each of this many reports it has moved by REST_MM (mm or rad), or an increment, at most. */
+/*
+ * A drive stands when in each of this many reports it has moved by REST_MM (mm or rad), or an
+ * increment, at most.
+ */
 #define REST_REPORTS 10
 #define REST_MM      1e-5
 
@@ -62,8 +65,9 @@ bool takt_drives_check_links(struct drives *d, unsigned index)
 }
 
 /*
- * After a fault a drive that still follows its setpoints brakes with them and lags no more than before; one that stays
- * behind by this part of what is allowed has left them, whatever its statusword says.
+ * After a fault a drive that still follows its setpoints brakes with them and lags no more than
+ * before; one that stays behind by this part of what is allowed has left them, whatever its
+ * statusword says.
  */
 #define STOPPING_LAG_RATIO 0.1
 
@@ -91,8 +95,8 @@ static inline void check_following(struct drives *d, unsigned index, double set_
 }
 
 /*
- * In operation: how many drives from the first one on do what they should, which is what nearly every cycle finds of all of
- * them.
+ * In operation: how many drives from the first one on do what they should, which is what nearly
+ * every cycle finds of all of them.
  */
 static unsigned count_well(struct drives *d, const double *set_mm)
 {
@@ -131,8 +135,8 @@ static bool is_lost(const struct drives *d, const struct drives_axis *axis)
 }
 
 /*
- * Setpoints have come to rest when they have not changed for as long as a report takes. Where a lost axis has to move,
- * the path is left anyway, and least if all brake as hard as they can.
+ * Setpoints have come to rest when they have not changed for as long as a report takes. Where a
+ * lost axis has to move, the path is left anyway, and least if all brake as hard as they can.
  */
 void takt_drives_watch_stop(struct drives *d)
 {

@@ -1,7 +1,8 @@
 /*
- * A drive with a concise configuration of its maker's: what it has is compared with that, object by object, and where all
- * agrees nothing is written. Else the whole is, in its order, since one entry may need another before it (a PDO is not valid
- * while it is mapped). Then the drive counts as set up.
+ * A drive with a concise configuration of its maker's: what it has is compared with that, object by
+ * object, and where all agrees nothing is written. Else the whole is, in its order, since one entry
+ * may need another before it (a PDO is not valid while it is mapped). Then the drive counts as set
+ * up.
  *
  *     compare each object's last entry --one differs--> write all entries
  */
@@ -23,7 +24,10 @@ static bool is_compared(const struct concise_dcf *dcf, uint32_t behind,
            !takt_concise_dcf_has(dcf, behind, entry->object);
 }
 
-/* The entry at the cursor, or the first behind it that counts in this pass; the cursor stays in front of it. */
+/*
+ * The entry at the cursor, or the first behind it that counts in this pass; the cursor stays in
+ * front of it.
+ */
 static bool find_entry(struct drives *d, struct concise_dcf_entry *entry, uint32_t *behind)
 {
     const struct concise_dcf *dcf = d->axis[d->at_axis].config.dcf;

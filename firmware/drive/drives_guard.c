@@ -1,6 +1,7 @@
 /*
- * Node guarding (CiA 301, 7.2.8.3.2.1): who has no heartbeat is asked for its state, once a period, by a remote frame of the
- * heartbeat's identifier. By that it knows of us, too: it takes us for lost when nothing has come for its life time.
+ * Node guarding (CiA 301, 7.2.8.3.2.1): who has no heartbeat is asked for its state, once a period,
+ * by a remote frame of the heartbeat's identifier. By that it knows of us, too: it takes us for
+ * lost when nothing has come for its life time.
  *
  *     cycle    k            k + 1        ...  k + period
  *              node 1 | RTR node 2 | RTR      node 1 | RTR
@@ -33,7 +34,10 @@ void takt_drives_begin_guard(struct drives *d, struct drives_guard *guard)
     guard->toggle = NMT_TOGGLE;
 }
 
-/* Guard k, of the drives and behind them of the I/O nodes, and its bus and node; NULL: it has not been started. */
+/*
+ * Guard k, of the drives and behind them of the I/O nodes, and its bus and node; NULL: it has not
+ * been started.
+ */
 static const struct drives_guard *guard_of(const struct drives *d, unsigned k, unsigned *bus,
                                            uint8_t *node)
 {

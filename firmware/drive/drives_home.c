@@ -1,6 +1,6 @@
 /*
- * Homing, and the change of modes before and after it (CiA 402-2, homing mode). The drive finds its home by itself; the
- * master chooses when, and watches.
+ * Homing, and the change of modes before and after it (CiA 402-2, homing mode). The drive finds its
+ * home by itself; the master chooses when, and watches.
  *
  *     statusword bits 13 12 10:  0 0 0 under way,  0 1 1 done,  0 0 1 idle,  1 x x error
  */
@@ -13,8 +13,8 @@
 #define MODE_TIMEOUT_MS 1000
 
 /*
- * A drive shows that it is homing within this time; one that shows "done" from then on is. Before, "done" may be an
- * older one.
+ * A drive shows that it is homing within this time; one that shows "done" from then on is. Before,
+ * "done" may be an older one.
  */
 #define HOMING_SHOWN_MS 20
 
@@ -30,7 +30,10 @@ static uint8_t next_order(const struct drives *d)
     return next;
 }
 
-/* Homing has given positions another zero: the target of a drive that leaves it is where it stands now. */
+/*
+ * Homing has given positions another zero: the target of a drive that leaves it is where it stands
+ * now.
+ */
 static void select_mode(struct drives_axis *axis, bool is_homing)
 {
     if (axis->mode == CIA402_MODE_HOMING)
@@ -70,7 +73,10 @@ void takt_drives_enter_enabled(struct drives *d)
             d->sent_mm[k][i] = d->axis[i].actual_mm;
 }
 
-/* A drive whose brake opens may show "operation enabled", and that it does not follow yet; older ones never show it. */
+/*
+ * A drive whose brake opens may show "operation enabled", and that it does not follow yet; older
+ * ones never show it.
+ */
 static bool may_follow(const struct drives *d, const struct drives_axis *axis)
 {
     bool is_cyclic = axis->mode == CIA402_MODE_CYCLIC_SYNC_POSITION ||
@@ -131,7 +137,10 @@ static bool shows_mode(struct drives *d)
            (d->sdo.result == SDO_DONE && (uint8_t)takt_sdo_client_number(&d->sdo) == axis->mode);
 }
 
-/* Modes are not in the statusword: object 6061 is read, of one drive after the other, until it agrees. */
+/*
+ * Modes are not in the statusword: object 6061 is read, of one drive after the other, until it
+ * agrees.
+ */
 void takt_drives_select(struct drives *d)
 {
     const uint32_t object = SDO_OBJECT(CIA402_MODE_DISPLAY >> 16, 0);
@@ -159,7 +168,10 @@ void takt_drives_select(struct drives *d)
                         &(struct drives_step){.object = object});
 }
 
-/* Farthest from its home that a drive stands when it has braked from there, mm: v^2 / (2 a) of the faster velocity. */
+/*
+ * Farthest from its home that a drive stands when it has braked from there, mm: v^2 / (2 a) of the
+ * faster velocity.
+ */
 static double overshoot_mm(const struct drives_config_axis *config)
 {
     const struct drives_homing *homing = &config->homing;

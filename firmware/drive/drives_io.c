@@ -1,10 +1,12 @@
 /*
- * The I/O nodes beside the drives (CiA 401): outputs to valves and contactors, inputs back, of which some stop the axes.
+ * The I/O nodes beside the drives (CiA 401): outputs to valves and contactors, inputs back, of
+ * which some stop the axes.
  *
- * A node is used as CiA 401 says it is at power-on: its first RPDO has the outputs (6200), its first TPDO the inputs
- * (6000), eight a byte, and its second RPDO analogue outputs (6411). That is checked and not changed; the inputs are asked for in every SYNC, so that one lost frame
- * costs a cycle, and a node that sends nothing is known within answer_timeout_cycles. A node that cannot do so sends them
- * when they change.
+ * A node is used as CiA 401 says it is at power-on: its first RPDO has the outputs (6200), its
+ * first TPDO the inputs (6000), eight a byte, and its second RPDO analogue outputs (6411). That is
+ * checked and not changed; the inputs are asked for in every SYNC, so that one lost frame costs a
+ * cycle, and a node that sends nothing is known within answer_timeout_cycles. A node that cannot do
+ * so sends them when they change.
  *
  *     BOOT, with the drives; DRIVES_IO: asked and told, one node after the other; started, one a cycle; inputs have come
  *     (drives_io_boot.c)
@@ -159,7 +161,10 @@ static void check_silence(struct drives *d, unsigned i)
                              NULL);
 }
 
-/* Limit inputs stop when they become low, so that an axis can be driven off; and not while drives look for home there. */
+/*
+ * Limit inputs stop when they become low, so that an axis can be driven off; and not while drives
+ * look for home there.
+ */
 static void check_inputs(struct drives *d, unsigned i)
 {
     struct drives_io *io = &d->io[i];
@@ -295,7 +300,10 @@ void takt_drives_send_outputs(struct drives *d, const struct can_port *port,
         d->io_cycles = 0;
 }
 
-/* Load of a bus: inputs and analogue outputs of every node, and the longest outputs: they do not change every cycle. */
+/*
+ * Load of a bus: inputs and analogue outputs of every node, and the longest outputs: they do not
+ * change every cycle.
+ */
 struct io_load {
     uint32_t cyclic_bits, output_bits;
 };

@@ -1,6 +1,7 @@
 /*
- * The start of the I/O nodes: each is asked whether it is used as CiA 401 says it is at power-on (drives_io.c), told how it is
- * watched, and started. The order of the steps is that of enum step; steps that nobody needs are left out.
+ * The start of the I/O nodes: each is asked whether it is used as CiA 401 says it is at power-on
+ * (drives_io.c), told how it is watched, and started. The order of the steps is that of enum step;
+ * steps that nobody needs are left out.
  */
 #include "base/assert.h"
 #include "canopen/objects.h"
@@ -97,7 +98,9 @@ static uint32_t value_of(const struct drives *d)
     }
 }
 
-/* Nothing is asked of outputs or inputs that nobody wants; only what has no heartbeat is guarded. */
+/*
+ * Nothing is asked of outputs or inputs that nobody wants; only what has no heartbeat is guarded.
+ */
 static bool is_wanted(const struct io_wiring *wiring, const struct drives_io *io, unsigned step)
 {
     if (step == STEP_GUARD || step == STEP_LIFE)
@@ -129,8 +132,8 @@ static bool ask_next(struct drives *d)
 }
 
 /*
- * Without a heartbeat, and without guarding, nobody would know of a node that has failed; all else that it refuses makes up
- * for itself.
+ * Without a heartbeat, and without guarding, nobody would know of a node that has failed; all else
+ * that it refuses makes up for itself.
  */
 static void take_refusal(struct drives *d, unsigned i)
 {

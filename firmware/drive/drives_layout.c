@@ -128,7 +128,9 @@ static void take_transmitted(struct drives *d)
         takt_drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_REPORT);
 }
 
-/* Bytes of all entries. 0: more than a frame holds, which a drive may have mapped only by mistake. */
+/*
+ * Bytes of all entries. 0: more than a frame holds, which a drive may have mapped only by mistake.
+ */
 static uint8_t length_of(const struct pdo_mapping *mapping, unsigned most)
 {
     unsigned bits = 0;

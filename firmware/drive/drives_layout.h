@@ -1,12 +1,15 @@
 /*
- * What is in the PDOs of a drive, wherever it is: from mappings to frames. For the sources of this room.
+ * What is in the PDOs of a drive, wherever it is: from mappings to frames. For the sources of this
+ * room.
  */
 #ifndef TAKT_DRIVE_DRIVES_LAYOUT_H
 #define TAKT_DRIVE_DRIVES_LAYOUT_H
 
 #include "drive/drives_private.h"
 
-/* Passes of drives_map.c from which TPDOs are meant, and from which one of either report will do. */
+/*
+ * Passes of drives_map.c from which TPDOs are meant, and from which one of either report will do.
+ */
 #define PASS_STATUS 5
 #define PASS_APART  9
 
@@ -34,7 +37,10 @@ void takt_drives_suffer(struct drives *d);
 /* The drive's value of what else is in a frame. */
 void takt_drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
                             uint32_t value);
-/* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
+/*
+ * Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is
+ * more to map after all.
+ */
 bool takt_drives_finish_map(struct drives *d);
 /* A frame of this length is sent in every cycle, of the drive that is being configured. */
 void takt_drives_count_bits(struct drives *d, unsigned length);

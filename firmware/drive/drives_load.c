@@ -32,10 +32,12 @@ unsigned takt_drives_cycle_frames(unsigned count, unsigned group, bool has_error
 }
 
 /*
- * Bits of a data frame with an 11-bit identifier and n bytes, intermission included: 47 + 8 n, and the most that can
- * be stuffed into its first 34 + 8 n bits, one after the first five and one after every four more:
+ * Bits of a data frame with an 11-bit identifier and n bytes, intermission included: 47 + 8 n, and
+ * the most that can be stuffed into its first 34 + 8 n bits, one after the first five and one after
+ * every four more:
  *     C = 47 + 8 n + floor((34 + 8 n - 1) / 4)
- * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007), eq. 1.
+ * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems
+ * 35 (2007), eq. 1.
  */
 static uint32_t classical_bits(uint32_t n)
 {
@@ -44,7 +46,8 @@ static uint32_t classical_bits(uint32_t n)
 }
 
 /*
- * The same of CAN FD (ISO 11898-1:2015), in bits of the nominal rate, rounded up: 32 of these, and at the data rate
+ * The same of CAN FD (ISO 11898-1:2015), in bits of the nominal rate, rounded up: 32 of these, and
+ * at the data rate
  *     D = 33 + 10 n,  n <= 16;  38 + 10 n above
  * The derivation is in host/bus/frame_bits.c.
  */
@@ -91,7 +94,10 @@ bool takt_drives_predict_load(unsigned count, const struct drives_rates *rates, 
     return takt_drives_predict_whole_load(&traffic, cycle_us, load);
 }
 
-/* Length at most of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
+/*
+ * Length at most of a TPDO with something that ends at this byte: one that the drive keeps may hold
+ * more.
+ */
 static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
 {
     const struct drives_axis *axis = &d->axis[i];

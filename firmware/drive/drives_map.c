@@ -7,12 +7,12 @@
  *     2, 3   RPDO3,4 what has found no place so far, else not valid
  *     4      RPDO1   again, if the target has found no place: target, controlword
  *     5      TPDO1   statusword, position                              every SYNC
- *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
- *     9 - 12 TPDO1-4 anew, if they have found no such place: each in one of its own, without SYNC by the timer, once a cycle
+ *     6 - 8  TPDO2-4 the same; error code, following error             event, 100 ms
+ *     9 - 12 TPDO1-4 anew, each in one of its own                      timer, once a cycle
  *
- * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that
- * is refused is left out, and so is the last one as long as their number is. Is anything else refused, what is in it counts, wherever
- * that is: identifier, type, entries. So fixed PDOs need no case of their own, and values that takt does not know stay as they are.
+ * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, number, inhibit
+ * time, valid. A refused entry is left out, and the last one as long as their number is refused.
+ * What is in it counts else: fixed PDOs need no case of their own. From 6 on: what has no place.
  */
 #include "base/assert.h"
 #include "canopen/cia402.h"
@@ -183,13 +183,13 @@ static bool is_event_driven(const struct drives_mapping *m)
     return drives_is_transmitted(m) && m->pdo.transmission >= PDO_EVENT_MIN;
 }
 
-/* A report that does not come by SYNC comes once a cycle; a following error changes as often, and is not to be told so. */
+/* A report without SYNC comes once a cycle; a following error is not to be told so often. */
 static uint32_t event_ms_of(const struct drives *d)
 {
     return is_report(&d->mapping.pdo) ? (d->cycle_us + 999) / 1000 : DRIVES_EVENT_MS;
 }
 
-/* Reports of every SYNC are not held back; others do not come more often than their timer has them. */
+/* Reports of every SYNC are not held back; others come no more often than their timer has it. */
 static uint32_t inhibit_of(const struct drives *d)
 {
     return is_event_driven(&d->mapping) ? event_ms_of(d) * OBJECT_PDO_INHIBIT_PER_MS : 0;

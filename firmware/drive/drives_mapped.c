@@ -1,4 +1,7 @@
-/* What the mapping of a drive has come to: whether it suffices, what goes by SDO, and what that costs. */
+/*
+ * What the mapping of a drive has come to: whether it suffices, what goes by SDO, and what that
+ * costs.
+ */
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
 #include "drive/drives_layout.h"
@@ -27,7 +30,10 @@ static bool raise_unmapped(struct drives *d, uint32_t object)
     return false;
 }
 
-/* The target of another mode may have found a place. True: it is told everything anew, for that mode. */
+/*
+ * The target of another mode may have found a place. True: it is told everything anew, for that
+ * mode.
+ */
 static bool try_next_mode(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];

@@ -9,22 +9,29 @@
 #include "drive/drives.h"
 #include "drive/word.h"
 
-/* Statusword and actual position in one TPDO. That of error code and following error is of the same length. */
+/*
+ * Statusword and actual position in one TPDO. That of error code and following error is of the same
+ * length.
+ */
 #define DRIVES_STATUS_LENGTH 6
 
 /* Period of TPDO2. */
 #define DRIVES_EVENT_MS 100
 
 /*
- * A fault of the drive at this index: ends DRIVES_STARTING and DRIVES_ENABLED. The first fault stays, since what
- * follows is its consequence. meaning: of the value, a constant; NULL: it has none.
+ * A fault of the drive at this index: ends DRIVES_STARTING and DRIVES_ENABLED. The first fault
+ * stays, since what follows is its consequence. meaning: of the value, a constant; NULL: it has
+ * none.
  */
 void takt_drives_raise(struct drives *d, unsigned index, enum takt_error error, double value,
                        const char *meaning);
 /* The same about an object of the drive. */
 void takt_drives_raise_object(struct drives *d, unsigned index, uint32_t object,
                               enum takt_error error, double value, const char *meaning);
-/* An emergency or error code has come after the statusword that told of the fault: it completes the diagnostic. */
+/*
+ * An emergency or error code has come after the statusword that told of the fault: it completes the
+ * diagnostic.
+ */
 void takt_drives_complete_fault(struct drives *d, unsigned index, uint16_t code);
 
 /* DRIVE_FAULT, by the code of an emergency; EMCY_NONE: none has come. */
@@ -58,7 +65,9 @@ static inline const double *drives_sent(const struct drives *d, unsigned ago)
     return d->sent_mm[(d->cycle - ago) & (DRIVES_HISTORY - 1)];
 }
 
-/* The bus of a drive, and of an I/O node. Where there can be but one it is no matter of run time. */
+/*
+ * The bus of a drive, and of an I/O node. Where there can be but one it is no matter of run time.
+ */
 static inline unsigned drives_axis_bus(const struct drives_axis *axis)
 {
     return CAN_BUSES_MAX > 1 ? axis->config.bus : 0;
@@ -112,8 +121,8 @@ struct drives_answer {
 };
 
 /*
- * The parts of a configuration, enum drives_part. next: its next request; false: there is none. take: what has come of
- * that; a drive that cannot be used has raised its fault.
+ * The parts of a configuration, enum drives_part. next: its next request; false: there is none.
+ * take: what has come of that; a drive that cannot be used has raised its fault.
  */
 bool takt_drives_next_ask(struct drives *d, struct drives_step *step);
 void takt_drives_take_ask(struct drives *d, const struct drives_answer *answer);
@@ -143,8 +152,8 @@ bool takt_drives_tells_mode(const struct drives_axis *axis);
 uint16_t takt_drives_controlword(const struct drives *d, const struct drives_axis *axis);
 
 /*
- * I/O nodes, drives_io.c and drives_io_boot.c: before anything else; a frame of one of them; what is watched in every cycle.
- * boot: true when all have booted.
+ * I/O nodes, drives_io.c and drives_io_boot.c: before anything else; a frame of one of them; what
+ * is watched in every cycle. boot: true when all have booted.
  */
 void takt_drives_io_init(struct drives *d, const struct drives_config *config);
 void takt_drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame);
@@ -169,8 +178,9 @@ uint32_t takt_drives_io_bits(const struct drives *d, unsigned bus);
 uint32_t takt_drives_io_wired_bits(const struct io_wiring *wiring, unsigned count, unsigned bus,
                                    const struct drives_rates *rates);
 /*
- * Node guarding. Every node that is guarded is asked in one of this many cycles: a heartbeat's period, or as many as
- * there are nodes. life_ms: after which the node takes us for lost, and too soon where that is less than two periods.
+ * Node guarding. Every node that is guarded is asked in one of this many cycles: a heartbeat's
+ * period, or as many as there are nodes. life_ms: after which the node takes us for lost, and too
+ * soon where that is less than two periods.
  */
 uint32_t takt_drives_guard_cycles(const struct drives *d);
 uint32_t takt_drives_guard_ms(const struct drives *d);
@@ -202,8 +212,9 @@ static inline bool drives_send_frame(const struct can_port *port, const struct c
 /* port: of the node's bus. */
 bool takt_drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node);
 /*
- * Drives that follow by velocity, drives_velocity.c. The target of a drive that stays where it is; and of one on its way:
- * what the setpoint moves in this cycle, and what the position lags behind its setpoint.
+ * Drives that follow by velocity, drives_velocity.c. The target of a drive that stays where it is;
+ * and of one on its way: what the setpoint moves in this cycle, and what the position lags behind
+ * its setpoint.
  */
 static inline bool drives_is_by_velocity(const struct drives_axis *axis)
 {
@@ -211,7 +222,10 @@ static inline bool drives_is_by_velocity(const struct drives_axis *axis)
 }
 void takt_drives_rest(struct drives_axis *axis);
 void takt_drives_steer(struct drives *d, unsigned index, double step_mm, double lag_mm);
-/* The next mode in which a drive may follow targets after this one, CIA402_MODE_NONE before the first; none: that. */
+/*
+ * The next mode in which a drive may follow targets after this one, CIA402_MODE_NONE before the
+ * first; none: that.
+ */
 uint8_t takt_drives_mode_after(const struct drives_axis *axis, uint8_t mode);
 
 /* One request, of the client that all nodes share. */
@@ -283,7 +297,10 @@ void takt_drives_probe_next(struct drives *d);
 
 /* Supervision, once a cycle. */
 void takt_drives_check_operation(struct drives *d);
-/* The same as far as it concerns drives that hold a position while others are homed. True: no fault. */
+/*
+ * The same as far as it concerns drives that hold a position while others are homed. True: no
+ * fault.
+ */
 bool takt_drives_check_links(struct drives *d, unsigned index);
 
 #endif

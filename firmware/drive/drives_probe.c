@@ -1,12 +1,12 @@
 /*
- * Touch probes of the drives (CiA 402-2, 60B8 ... 60BD). A drive latches its own position when its probe input changes, so
- * what a probing move finds is as exact as the encoder, not as the cycle.
+ * Touch probes of the drives (CiA 402-2, 60B8 ... 60BD). A drive latches its own position when its
+ * probe input changes, so what a probing move finds is as exact as the encoder, not as the cycle.
  *
  *     takt_drives_arm_probe     each drive   60B8 = 0, which forgets what was before; 60B8 = the edge that is looked for
  *     takt_drives_read_probe    each drive   60B9: has it come? then 60BA or 60BB: where
  *
- * Both take some cycles of SDO, in which the axes are to rest. A drive that refuses has no touch probe and is not asked
- * again; one whose edge has not come is not wired to the probe.
+ * Both take some cycles of SDO, in which the axes are to rest. A drive that refuses has no touch
+ * probe and is not asked again; one whose edge has not come is not wired to the probe.
  */
 #include "canopen/cia402.h"
 #include "drive/drives_private.h"

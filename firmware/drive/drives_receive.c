@@ -6,7 +6,9 @@
 #include "canopen/node.h"
 #include "drive/drives_private.h"
 
-/* Frames taken of a bus in one cycle at most, so that a babbling bus cannot hold the control cycle. */
+/*
+ * Frames taken of a bus in one cycle at most, so that a babbling bus cannot hold the control cycle.
+ */
 #define FRAMES_PER_CYCLE_MAX 256
 
 static inline void set_position(struct drives *d, struct drives_axis *axis, uint32_t raw)
@@ -17,7 +19,10 @@ static inline void set_position(struct drives *d, struct drives_axis *axis, uint
     d->actual.at[axis->config.axis] = axis->actual_mm;
 }
 
-/* The plain form, which nearly all reports have: the statusword, then the position, and nothing else to be done. */
+/*
+ * The plain form, which nearly all reports have: the statusword, then the position, and nothing
+ * else to be done.
+ */
 static inline void take_status(struct drives *d, struct drives_axis *axis,
                                const struct can_frame *frame)
 {
@@ -28,7 +33,10 @@ static inline void take_status(struct drives *d, struct drives_axis *axis,
     set_position(d, axis, little_endian_read32(frame->data + 2));
 }
 
-/* A report of any form: statusword, position or both; a frame too short for its position counts for nothing. */
+/*
+ * A report of any form: statusword, position or both; a frame too short for its position counts for
+ * nothing.
+ */
 static void take_report(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
 {
     bool has_position = frame->id == axis->position_id;

@@ -55,8 +55,9 @@ static void fill(struct can_frame *frame, const struct drives_frame *as,
 }
 
 /*
- * port: of every bus. A controlword that is refused counts as not sent, and comes again in the next cycle. One that has no
- * PDO is told by SDO while the drives are started; after a fault nobody waits for an answer.
+ * port: of every bus. A controlword that is refused counts as not sent, and comes again in the next
+ * cycle. One that has no PDO is told by SDO while the drives are started; after a fault nobody
+ * waits for an answer.
  */
 static void send_controlword(struct drives_axis *axis, const struct can_port *port,
                              uint16_t controlword, bool is_urgent)
@@ -73,8 +74,9 @@ static void send_controlword(struct drives_axis *axis, const struct can_port *po
 }
 
 /*
- * The drives of a group write into one frame of their bus; it is sent when the last of them has written. While
- * drives are being enabled nothing is lost by a refused frame, in operation a setpoint is.
+ * The drives of a group write into one frame of their bus; it is sent when the last of them has
+ * written. While drives are being enabled nothing is lost by a refused frame, in operation a
+ * setpoint is.
  */
 static void send_targets(struct drives *d, const struct can_port *port)
 {
@@ -109,7 +111,10 @@ static void send_resets(struct drives *d, const struct can_port *port)
             d->axis[i].reset_pending = false;
 }
 
-/* Many drives take a mapping in this state alone, and some leave it by themselves when they have booted. */
+/*
+ * Many drives take a mapping in this state alone, and some leave it by themselves when they have
+ * booted.
+ */
 static void send_holds(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->count; i++)
@@ -137,9 +142,9 @@ static struct drives_axis *next_to_start(struct drives *d)
 }
 
 /*
- * One node a cycle, so that event timers run out in different cycles; from the highest id down, since there
- * are drives whose first period is shorter by their id in ms. What a drive has sent before is history, and silence
- * counts from now.
+ * One node a cycle, so that event timers run out in different cycles; from the highest id down,
+ * since there are drives whose first period is shorter by their id in ms. What a drive has sent
+ * before is history, and silence counts from now.
  */
 static void send_start(struct drives *d, const struct can_port *port)
 {
@@ -155,9 +160,9 @@ static void send_start(struct drives *d, const struct can_port *port)
 }
 
 /*
- * A drive that does not follow setpoints is told to be where it is, so that it does not jump when it does.
- * One drive a cycle gets its controlword, in turn and repeatedly: the load stays that of a normal
- * cycle and a frame may get lost.
+ * A drive that does not follow setpoints is told to be where it is, so that it does not jump when
+ * it does. One drive a cycle gets its controlword, in turn and repeatedly: the load stays that of a
+ * normal cycle and a frame may get lost.
  */
 static void send_enabling(struct drives *d, const struct can_port *port)
 {
@@ -202,8 +207,9 @@ static void send_starting(struct drives *d, const struct can_port *port)
 }
 
 /*
- * Nearest whole number, halves away from zero: what is added is the last double below a half, so that a half is rounded up
- * to the next whole number by the sum itself and the last double below a half is not. x: within INCREMENTS_MAX and a half.
+ * Nearest whole number, halves away from zero: what is added is the last double below a half, so
+ * that a half is rounded up to the next whole number by the sum itself and the last double below a
+ * half is not. x: within INCREMENTS_MAX and a half.
  */
 static int32_t nearest(double x)
 {
@@ -224,7 +230,10 @@ static inline void set_target(struct drives *d, unsigned index, double set_mm)
                           NULL);
 }
 
-/* The lag is that of the setpoint to which the last report belongs; without a report in this cycle it is not known. */
+/*
+ * The lag is that of the setpoint to which the last report belongs; without a report in this cycle
+ * it is not known.
+ */
 static void steer(struct drives *d, unsigned i)
 {
     const struct drives_axis *axis = &d->axis[i];
@@ -259,7 +268,8 @@ static void send_operation(struct drives *d, const struct can_port *port,
 }
 
 /*
- * All at once; then, one a cycle, again to those whose statusword does not show it, for a frame may get lost.
+ * All at once; then, one a cycle, again to those whose statusword does not show it, for a frame may
+ * get lost.
  */
 static void send_quick_stop(struct drives *d, const struct can_port *port)
 {
@@ -296,8 +306,9 @@ void takt_drives_send(struct drives *d, const struct can_port *port, const struc
 }
 
 /*
- * One drive a call, in turn: the steps to "operation enabled" without the last one. Bit 7, fault reset, and bit 3, enable
- * operation, stay 0. What the drives have been told to stop by is not forgotten.
+ * One drive a call, in turn: the steps to "operation enabled" without the last one. Bit 7, fault
+ * reset, and bit 3, enable operation, stay 0. What the drives have been told to stop by is not
+ * forgotten.
  */
 void takt_drives_switch_on_at_rest(struct drives *d, const struct can_port *port)
 {

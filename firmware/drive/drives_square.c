@@ -1,6 +1,7 @@
 /*
- * Gantries: two drives of one axis. Each is homed by its own switch; then the second one is brought to where the first one
- * stands, which squares the axis. From then on both get the same setpoint, and their positions are compared.
+ * Gantries: two drives of one axis. Each is homed by its own switch; then the second one is brought
+ * to where the first one stands, which squares the axis. From then on both get the same setpoint,
+ * and their positions are compared.
  *
  *     skew = actual position of the second - actual position of the first,      |skew| <= skew_max_mm
  */
@@ -70,8 +71,8 @@ void takt_drives_begin_square(struct drives *d)
 }
 
 /*
- * Cycles for a way D at rest to rest, x = D (10 u^3 - 15 u^4 + 6 u^5): its peaks are 15/8 D/T in velocity and
- * 10/sqrt(3) D/T^2 in acceleration, not above those of homing:
+ * Cycles for a way D at rest to rest, x = D (10 u^3 - 15 u^4 + 6 u^5): its peaks are 15/8 D/T in
+ * velocity and 10/sqrt(3) D/T^2 in acceleration, not above those of homing:
  *     T = max(15/8 D / v,  sqrt(10/sqrt(3) D / a))
  */
 static double square_cycles(const struct drives *d, const struct drives_axis *second, double way_mm)

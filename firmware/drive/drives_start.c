@@ -4,7 +4,8 @@
  *     BOOT --all booted--> CONFIGURE --all told--> IO --they work--> START --all started--> ENABLE --all enabled--> SELECT
  *       SELECT --modes shown, axes left to home--> HOME --they are--> SELECT ... --none left--> FOLLOW --> SQUARE --> DRIVES_ENABLED
  *
- * A drive that boots before the end of ENABLE has forgotten what it was told: CONFIGURE begins again.
+ * A drive that boots before the end of ENABLE has forgotten what it was told: CONFIGURE begins
+ * again.
  */
 #include "canopen/cia402.h"
 #include "canopen/emcy.h"
@@ -92,7 +93,10 @@ void takt_drives_start_again(struct drives *d, unsigned index)
         begin_again(d, index);
 }
 
-/* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
+/*
+ * Reset once, and once more when that has taken too long: the order may have been lost, or the
+ * answer.
+ */
 static void boot(struct drives *d)
 {
     bool all = takt_drives_io_boot(d);
@@ -166,7 +170,10 @@ static bool takes(const struct drives_axis *axis, uint16_t cob_id)
            (axis->control_frame.length > 0 && axis->control_frame.cob_id == cob_id);
 }
 
-/* Drives that keep their PDOs may have been set up for one identifier: each would take the other's target for its own. */
+/*
+ * Drives that keep their PDOs may have been set up for one identifier: each would take the other's
+ * target for its own.
+ */
 static void check_shared(struct drives *d, unsigned i)
 {
     const struct drives_axis *axis = &d->axis[i];
@@ -227,8 +234,9 @@ static void take_answer(struct drives *d)
 }
 
 /*
- * No answer: the request is repeated, and then the drive is lost. The first one of a drive is repeated for as long as it
- * may take to boot: what was heard may have been of the time before its reset.
+ * No answer: the request is repeated, and then the drive is lost. The first one of a drive is
+ * repeated for as long as it may take to boot: what was heard may have been of the time before its
+ * reset.
  */
 static void miss_answer(struct drives *d)
 {
@@ -284,7 +292,9 @@ static bool all_are_enabled(const struct drives *d)
     return true;
 }
 
-/* Emergencies of the time before are history, even where a drive does not say that they are over. */
+/*
+ * Emergencies of the time before are history, even where a drive does not say that they are over.
+ */
 static void enter_operation(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
@@ -329,8 +339,9 @@ bool takt_drives_tells_mode(const struct drives_axis *axis)
 }
 
 /*
- * A fault is reset by an edge; one that has come too early for the drive does nothing, so it comes again and again. The times
- * between are long beside those in which drives look at their controlword, 0.25 to 10 ms, whatever the cycle is.
+ * A fault is reset by an edge; one that has come too early for the drive does nothing, so it comes
+ * again and again. The times between are long beside those in which drives look at their
+ * controlword, 0.25 to 10 ms, whatever the cycle is.
  */
 #define RESET_US 32000U
 
@@ -388,7 +399,10 @@ static void tell_by_sdo(struct drives *d)
             tell(d, &d->axis[i]);
 }
 
-/* The time of a slow request is not the drive's; but a drive that has to be told ever again does not get ready. */
+/*
+ * The time of a slow request is not the drive's; but a drive that has to be told ever again does
+ * not get ready.
+ */
 static void count_cycle(struct drives *d)
 {
     if (!d->is_telling || d->tells > TELLS_MAX)

@@ -23,7 +23,8 @@ enum drives_phase {
     DRIVES_IO,        /* so are the I/O nodes; then they are started, and their inputs come */
     DRIVES_START,     /* nodes become operational, one a cycle: that staggers their event timers */
     DRIVES_ENABLE,    /* statuswords lead to "operation enabled" */
-    DRIVES_SELECT, /* each shows the mode it is to be in: homing, or that in which targets are followed */
+    /* each shows the mode it is to be in: homing, or that in which targets are followed */
+    DRIVES_SELECT,
     DRIVES_HOME,   /* the axes of one order look for their home */
     DRIVES_FOLLOW, /* drives in interpolated position mode begin to follow */
     DRIVES_SQUARE  /* the second drive of a gantry comes to where the first one is */
@@ -68,8 +69,8 @@ struct drives_guard {
 
 struct drives_axis {
     struct drives_config_axis config;
-    uint16_t
-        report_id; /* TPDO with statusword and position in the plain form, drives_receive.c; as status_id */
+    /* TPDO with statusword and position in the plain form, drives_receive.c; as status_id */
+    uint16_t report_id;
     uint8_t sends; /* enum drives_sends */
     bool reset_pending;
     bool hold_pending;  /* it is to be pre-operational */

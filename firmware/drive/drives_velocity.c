@@ -1,10 +1,12 @@
 /*
- * Drives without a mode of position: the position loop is closed here, as with drives that take +-10 V.
+ * Drives without a mode of position: the position loop is closed here, as with drives that take
+ * +-10 V.
  *
  *     v = dset/T + K (set - actual)
  *
- * set - actual is that of the last report. K = 1 / (4 sum of all delays) lets the lag die away without overshoot: two
- * delays in a row, of the drive and of the loop, t s^2 + s + K = 0, have a double root there.
+ * set - actual is that of the last report. K = 1 / (4 sum of all delays) lets the lag die away
+ * without overshoot: two delays in a row, of the drive and of the loop, t s^2 + s + K = 0, have a
+ * double root there.
  */
 #include "base/maths.h"
 #include "drive/drives_private.h"

@@ -1,5 +1,6 @@
 /*
- * What the bits of the I/O nodes on the bus (CiA 401) are: as a machine file says it, and as the controller keeps it.
+ * What the bits of the I/O nodes on the bus (CiA 401) are: as a machine file says it, and as the
+ * controller keeps it.
  */
 #ifndef TAKT_DRIVE_IO_WIRING_H
 #define TAKT_DRIVE_IO_WIRING_H

@@ -6,7 +6,9 @@
 
 #include <stdint.h>
 
-/* bit/s. data: behind the rate switch of CAN FD, > 0: its data frames are; 0: they are classical. */
+/*
+ * bit/s. data: behind the rate switch of CAN FD, > 0: its data frames are; 0: they are classical.
+ */
 struct drives_rates {
     uint32_t nominal, data;
 };

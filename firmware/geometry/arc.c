@@ -5,14 +5,14 @@
  *     radius = radius_start + radius_change f
  *     other  = start + (end - start) f            (every axis outside the plane)
  *
- * so a circle, a helix and an arc whose two radii differ are one form; the last is how an arc is run whose end is,
- * within the tolerance, not on the circle of its start. The length element is
+ * so a circle, a helix and an arc whose two radii differ are one form; the last is how an arc is
+ * run whose end is, within the tolerance, not on the circle of its start. The length element is
  *
  *     ds/df = g(f) = sqrt((radius sweep)^2 + radius_change^2 + sum of other linear axes^2)
  *
- * which is constant for a circle or helix: f = s / L. Else f(s) is the cubic with the right value and slope
- * (1/g) at both ends; it moves the point along the curve, never off it, and its error in length is below
- * L (radius_change / radius)^3 / 400.
+ * which is constant for a circle or helix: f = s / L. Else f(s) is the cubic with the right value
+ * and slope (1/g) at both ends; it moves the point along the curve, never off it, and its error in
+ * length is below L (radius_change / radius)^3 / 400.
  */
 #include "geometry/arc.h"
 
@@ -40,7 +40,10 @@ void takt_plane_axes(enum plane plane, enum axis *first, enum axis *second)
     *second = (enum axis)axes[plane][1];
 }
 
-/* g(f)^2 without the part that changes with the radius: radius_change^2 + sum of other linear axes^2 */
+/*
+ * g(f)^2 without the part that changes with the radius: radius_change^2 + sum of other linear
+ * axes^2
+ */
 static double constant_speed_squared(const struct curve *c)
 {
     double sum = c->arc.radius_change_mm * c->arc.radius_change_mm;
@@ -80,8 +83,9 @@ static double arc_length(const struct curve *c, double constant_squared)
 }
 
 /*
- * Angle from start to end in the sense of turning. When they coincide it is a whole turn and the little that the end's
- * angle differs from the start's, of either sign: the end is hit, however small the radius.
+ * Angle from start to end in the sense of turning. When they coincide it is a whole turn and the
+ * little that the end's angle differs from the start's, of either sign: the end is hit, however
+ * small the radius.
  */
 static double arc_sweep(double from_rad, double to_rad, bool clockwise, bool closed, unsigned turns)
 {
@@ -98,7 +102,10 @@ static double arc_sweep(double from_rad, double to_rad, bool clockwise, bool clo
     return clockwise ? -sweep : sweep;
 }
 
-/* f' L - 1 at an end of the arc. f' L <= 3 at both ends keeps the cubic monotone (Fritsch and Carlson 1980). */
+/*
+ * f' L - 1 at an end of the arc. f' L <= 3 at both ends keeps the cubic monotone (Fritsch and
+ * Carlson 1980).
+ */
 static double skew(const struct curve *c, double constant_squared, double f)
 {
     return maths_min(2.0, c->length_mm / speed(c, constant_squared, f) - 1.0);
@@ -296,16 +303,16 @@ void takt_arc_curvature(const struct curve *c, double s_mm, struct point *k)
 }
 
 /*
- * Bounds of the derivatives by s. With R the larger radius, d = |radius_change|, w = |sweep|, and bounds F1, F2, F3 of
- * the derivatives of f, in the plane
+ * Bounds of the derivatives by s. With R the larger radius, d = |radius_change|, w = |sweep|, and
+ * bounds F1, F2, F3 of the derivatives of f, in the plane
  *     |x'|   <= (R w + d) F1
  *     |x''|  <= (R w + 2 d) w F1^2 + (R w + d) F2
  *     |x'''| <= (R w + 3 d) w^2 F1^3 + 3 (R w + 2 d) w F1 F2 + (R w + d) F3
  * and outside it the same with (R w + ...) replaced by the axis's travel and w by 0.
  *
- * The part of x'' along the path is d|x'|/ds, and d|dx/df|/df = radius w^2 d / |dx/df| <= w d; of the three terms of
- * x''' the last lies along the path, and d3x/df3 = -3 d w^2 (cos, sin) - radius w^3 (-sin, cos) has at most 4 d w^2
- * across it:
+ * The part of x'' along the path is d|x'|/ds, and d|dx/df|/df = radius w^2 d / |dx/df| <= w d; of
+ * the three terms of x''' the last lies along the path, and d3x/df3 = -3 d w^2 (cos, sin) - radius
+ * w^3 (-sin, cos) has at most 4 d w^2 across it:
  *     along  <= w d F1^2 + (R w + d) F2
  *     across <= 4 d w^2 F1^3 + 3 (R w + 2 d) w F1 F2
  */

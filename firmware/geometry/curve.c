@@ -1,4 +1,7 @@
-/* Chooses the kind of curve: the one place that knows them all. A new kind is one file and one line in each switch. */
+/*
+ * Chooses the kind of curve: the one place that knows them all. A new kind is one file and one line
+ * in each switch.
+ */
 #include "geometry/curve.h"
 
 #include "base/assert.h"

@@ -3,28 +3,30 @@
  *
  *     P = C + r [(cos t, sin t) + h phi (sin t, -cos t)],      t = heading + h phi,   h = 1 or -1 (hand)
  *
- * (seed 001, eq. 2, 6). The curve's direction there is t, its radius of curvature r phi, its distance from C
- * r sqrt(1 + phi^2), and the vector from C has turned by inv phi = phi - atan phi since the base circle. Its length is
- * (r / 2) (phi^2 - phi0^2), so phi^2 is linear in the length: the place at s is a closed form,
+ * (seed 001, eq. 2, 6). The curve's direction there is t, its radius of curvature r phi, its
+ * distance from C r sqrt(1 + phi^2), and the vector from C has turned by inv phi = phi - atan phi
+ * since the base circle. Its length is (r / 2) (phi^2 - phi0^2), so phi^2 is linear in the length:
+ * the place at s is a closed form,
  *
  *     phi(s) = sqrt(phi0^2 +- 2 s / r)
  *
  * and equal steps of s are equal lengths, exactly. Other axes move in proportion to the length.
  *
- * Ends off the curve. Programs have rounded ends. The distances of both ends from C and the angle T between them
- * overdetermine phi at both ends: with u = 1 / r as unknown,
+ * Ends off the curve. Programs have rounded ends. The distances of both ends from C and the angle T
+ * between them overdetermine phi at both ends: with u = 1 / r as unknown,
  *
  *     f(u) = inv phi_outer - inv phi_inner - T = 0,       phi = sqrt((d u)^2 - 1)
  *
- * f' = (phi_outer - phi_inner) / u > 0 and f'' = (1 / phi_outer - 1 / phi_inner) / u^2 < 0, so Newton's steps from the
- * left stay left of the root and go up to it. The involute found is off the programmed one by a distance that grows
- * steadily from 0 at the start to what the end is off. When f(1 / d_inner) > 0, the inner end is in the base circle that
- * the outer one asks for, and no circle about C will do. Then the programmed involute is turned and scaled until its
- * cusp is the inner end and its other end the outer one; since the distance from the cusp grows along the curve, no
- * point moves farther than both ends do.
+ * f' = (phi_outer - phi_inner) / u > 0 and f'' = (1 / phi_outer - 1 / phi_inner) / u^2 < 0, so
+ * Newton's steps from the left stay left of the root and go up to it. The involute found is off the
+ * programmed one by a distance that grows steadily from 0 at the start to what the end is off. When
+ * f(1 / d_inner) > 0, the inner end is in the base circle that the outer one asks for, and no
+ * circle about C will do. Then the programmed involute is turned and scaled until its cusp is the
+ * inner end and its other end the outer one; since the distance from the cusp grows along the
+ * curve, no point moves farther than both ends do.
  *
- * Rejected: keeping r and adding a drift in proportion to the length (steps are not equal any more); moving C alone
- * (does not help after whole turns).
+ * Rejected: keeping r and adding a drift in proportion to the length (steps are not equal any
+ * more); moving C alone (does not help after whole turns).
  */
 #include "geometry/involute.h"
 
@@ -36,7 +38,10 @@
 /* Newton's steps: 4 to 6 are used; the limit is for ends far off the curve. */
 #define NEWTON_MAX 60
 
-/* Nearer to the base circle than this a curve begins or ends on it; then the piece there turns by this much. */
+/*
+ * Nearer to the base circle than this a curve begins or ends on it; then the piece there turns by
+ * this much.
+ */
 #define CUSP_NEAR_RAD  0.1
 #define CUSP_PIECE_RAD 1.0
 /* A rest shorter than that is no piece of its own. */
@@ -45,7 +50,10 @@
 /* Largest ratio of curvatures within other pieces: its logarithm. */
 #define PIECE_LN_RATIO 0.22314355131420976 /* ln 1.25 */
 
-/* Curvature is that of this angle on the base circle itself: finite, and so large that nobody passes. */
+/*
+ * Curvature is that of this angle on the base circle itself: finite, and so large that nobody
+ * passes.
+ */
 #define UNROLLED_MIN_RAD 1e-8
 
 /* Both ends as seen from the centre: the inner one first. */
@@ -84,7 +92,9 @@ static double excess(const struct ends *e, double u, double *slope)
            e->turned_rad;
 }
 
-/* The radius of the base circle about C that suits both ends; that of the inner end if none does. */
+/*
+ * The radius of the base circle about C that suits both ends; that of the inner end if none does.
+ */
 static double fit_radius(const struct ends *e, double radius_mm)
 {
     const double least = 1.0 / e->inner_mm;
@@ -121,7 +131,10 @@ static double distance_of(const struct point *p, const struct curve_involute *i)
     return maths_sqrt(x * x + y * y);
 }
 
-/* T: the turn in the sense of the motion that is nearest to what the programmed base circle asks for. */
+/*
+ * T: the turn in the sense of the motion that is nearest to what the programmed base circle asks
+ * for.
+ */
 static double turned_between(const struct curve *c, double radius_mm, bool clockwise,
                              const struct ends *e)
 {
@@ -144,7 +157,10 @@ static void string_end(const struct curve_involute *i, double phi, double at[2])
     at[1] = i->radius_mm * (sine - i->hand * phi * cosine);
 }
 
-/* Turns and scales the curve so that its cusp is the inner end and the angle outer_rad is the outer one. */
+/*
+ * Turns and scales the curve so that its cusp is the inner end and the angle outer_rad is the outer
+ * one.
+ */
 static void move_cusp(struct curve_involute *i, const struct point *inner,
                       const struct point *outer, double outer_rad)
 {
@@ -320,7 +336,10 @@ struct involute_curvature takt_involute_curvature_change(const struct curve *c, 
     };
 }
 
-/* d2P/ds2 lies across the curve: to the left of its heading away from the base circle when that turns left. */
+/*
+ * d2P/ds2 lies across the curve: to the left of its heading away from the base circle when that
+ * turns left.
+ */
 void takt_involute_curvature(const struct curve *c, double s_mm, struct point *k)
 {
     const struct curve_involute *i = &c->involute;
@@ -334,7 +353,10 @@ void takt_involute_curvature(const struct curve *c, double s_mm, struct point *k
     k->at[i->second] = i->hand * curvature * cosine;
 }
 
-/* What is sharpest is sharpest at the inner end. With curvature k in the plane: q k, q^2 k, q^3 k^2 and q^3 k'. */
+/*
+ * What is sharpest is sharpest at the inner end. With curvature k in the plane: q k, q^2 k, q^3 k^2
+ * and q^3 k'.
+ */
 static void bound_plane(const struct curve *c, struct curve_bounds *b, int axis)
 {
     const struct curve_involute *i = &c->involute;
@@ -391,7 +413,10 @@ double takt_involute_step_max(const struct curve *c, double error_mm)
     return root * root / i->plane_ratio;
 }
 
-/* From phi to the next of the fewest equal ratios, none above PIECE_LN_RATIO, that lead to the other one. */
+/*
+ * From phi to the next of the fewest equal ratios, none above PIECE_LN_RATIO, that lead to the
+ * other one.
+ */
 static double next_unrolled(double from_rad, double to_rad)
 {
     const double ln = takt_maths_ln(to_rad / from_rad);

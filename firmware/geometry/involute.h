@@ -1,8 +1,9 @@
 /*
  * Involutes of a circle: the cases of curve.h for CURVE_INVOLUTE.
  *
- * On the base circle the curvature is infinite, so a piece that begins or ends there must be gone from, or to, rest.
- * Then no limit of feed is needed: with jerk along the path of at most j from rest at the cusp,
+ * On the base circle the curvature is infinite, so a piece that begins or ends there must be gone
+ * from, or to, rest. Then no limit of feed is needed: with jerk along the path of at most j from
+ * rest at the cusp,
  *
  *     |a| <= sqrt(2 j v),  v^3 <= (9/2) j s^2,  v^2 <= 2 a_max s
  *
@@ -42,28 +43,28 @@ double takt_involute_unrolled(const struct curve *c, double s_mm);
 double takt_involute_place(const struct curve *c, double unrolled_rad);
 
 /*
- * phi - atan phi, phi = sqrt((d / r)^2 - 1): how far the vector from the centre has turned since the base circle when
- * it is d long. 0 inside the base circle.
+ * phi - atan phi, phi = sqrt((d / r)^2 - 1): how far the vector from the centre has turned since
+ * the base circle when it is d long. 0 inside the base circle.
  */
 double takt_involute_turned(double distance_mm, double radius_mm);
 
 /*
- * The outermost place whose heading is quarter pi / 2: there the curve is farthest in one direction of its plane.
- * False: it does not reach that heading.
+ * The outermost place whose heading is quarter pi / 2: there the curve is farthest in one direction
+ * of its plane. False: it does not reach that heading.
  */
 bool takt_involute_extreme(const struct curve *c, unsigned quarter, double *s_mm);
 
 /*
- * By how much longer than along the path acceleration and jerk are within a piece that turns by cusp_rad from the base
- * circle: sqrt(1 + phi^2), sqrt((1 + 9/8 phi^2)^2 + (45/8 phi)^2).
+ * By how much longer than along the path acceleration and jerk are within a piece that turns by
+ * cusp_rad from the base circle: sqrt(1 + phi^2), sqrt((1 + 9/8 phi^2)^2 + (45/8 phi)^2).
  */
 double takt_involute_cusp_acceleration(double cusp_rad);
 double takt_involute_cusp_jerk(double cusp_rad);
 
 /*
- * Longest step whose chord leaves the curve by error_mm at most, wherever it begins. It is the one from the base
- * circle, where the curve is y = sqrt(8 / (9 r)) x^(3/2) and a chord of length l leaves it by
- * (4/27) sqrt(8 / (9 r)) l^(3/2).
+ * Longest step whose chord leaves the curve by error_mm at most, wherever it begins. It is the one
+ * from the base circle, where the curve is y = sqrt(8 / (9 r)) x^(3/2) and a chord of length l
+ * leaves it by (4/27) sqrt(8 / (9 r)) l^(3/2).
  */
 double takt_involute_step_max(const struct curve *c, double error_mm);
 

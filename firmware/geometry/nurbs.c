@@ -1,17 +1,20 @@
 /*
- * A NURBS curve of degree d over the span of its knots t_l <= u <= t_l+1 is a rational polynomial: in homogeneous
- * coordinates (w x, w y, w) one whose blossom b(u_1, ..., u_d), which is linear in each of its arguments and does not mind
- * their order, has the control points as values at successive knots. Values at u0 (d - j times) and u1 (j times) are the
- * Bezier points of the curve between u0 and u1:
+ * A NURBS curve of degree d over the span of its knots t_l <= u <= t_l+1 is a rational polynomial:
+ * in homogeneous coordinates (w x, w y, w) one whose blossom b(u_1, ..., u_d), which is linear in
+ * each of its arguments and does not mind their order, has the control points as values at
+ * successive knots. Values at u0 (d - j times) and u1 (j times) are the Bezier points of the curve
+ * between u0 and u1:
  *
  *     step r: point_i = (1 - a) point_i-1 + a point_i,   a = (u_r - t_i) / (t_i+d+1-r - t_i)
  *
- * A piece takes place, direction and curvature from both ends and its length from Gauss-Legendre quadrature, and is
- * halved until three places of it are as near to the curve as NURBS_ERROR_MM and its tangent there has length 1. Its error grows
- * like L^6 and is largest in the middle; halving makes it 64 times less.
+ * A piece takes place, direction and curvature from both ends and its length from Gauss-Legendre
+ * quadrature, and is halved until three places of it are as near to the curve as NURBS_ERROR_MM and
+ * its tangent there has length 1. Its error grows like L^6 and is largest in the middle; halving
+ * makes it 64 times less.
  *
- * Rejected: arcs (curvature steps, and 1e-9 mm takes thousands); following the parameter (feed goes up and down with the
- * spacing of the control points); finding the parameter of a length while moving (iterations in the control cycle).
+ * Rejected: arcs (curvature steps, and 1e-9 mm takes thousands); following the parameter (feed goes
+ * up and down with the spacing of the control points); finding the parameter of a length while
+ * moving (iterations in the control cycle).
  */
 #include "geometry/nurbs.h"
 
@@ -20,7 +23,9 @@
 
 #include <string.h>
 
-/* A span is halved so often at most: a curve that is not smooth even then has no direction there. */
+/*
+ * A span is halved so often at most: a curve that is not smooth even then has no direction there.
+ */
 #define HALVINGS_MAX 40
 
 /* The tangent may be so much longer or shorter than 1. */
@@ -124,7 +129,10 @@ static void cut(const struct nurbs *n, double from, double to, struct part *part
     }
 }
 
-/* By de Casteljau: the last three rows are value and differences. Of x = X / W: x' = (X' - W' x) / W and so on. */
+/*
+ * By de Casteljau: the last three rows are value and differences. Of x = X / W: x' = (X' - W' x) /
+ * W and so on.
+ */
 static void look(const struct part *part, double v, struct place *p)
 {
     const double degree = (double)part->degree;
@@ -191,7 +199,10 @@ static bool set_end(const struct place *p, unsigned end, struct curve_course *co
     return maths_is_finite(course->curvature_1_mm[end]);
 }
 
-/* Do all Bezier points lie on the chord, one behind the other? Their weights only space the curve on it. */
+/*
+ * Do all Bezier points lie on the chord, one behind the other? Their weights only space the curve
+ * on it.
+ */
 static bool is_straight(const struct part *part, const struct place *from, const struct place *to)
 {
     const double way[2] = {to->at[0] - from->at[0], to->at[1] - from->at[1]};
@@ -271,8 +282,8 @@ static bool fits(const struct part *part, const struct place *from, const struct
 }
 
 /*
- * From n->at to that parameter. False: it must be shorter. It begins where the last piece ends, less than
- * CURVE_LENGTH_MIN_MM beside the curve: parts too short for a piece are passed over.
+ * From n->at to that parameter. False: it must be shorter. It begins where the last piece ends,
+ * less than CURVE_LENGTH_MIN_MM beside the curve: parts too short for a piece are passed over.
  */
 static bool make_piece(const struct nurbs *n, double to, struct nurbs_piece *piece)
 {

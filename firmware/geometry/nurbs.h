@@ -1,10 +1,10 @@
 /*
- * NURBS in a plane: control points and knots that come one by one -> pieces of quintics (curve.h), each within
- * NURBS_ERROR_MM of the curve.
+ * NURBS in a plane: control points and knots that come one by one -> pieces of quintics (curve.h),
+ * each within NURBS_ERROR_MM of the curve.
  *
- * A knot decides a span when the points and knots before it are known, so only 2 order - 1 of each are kept, however many
- * there are. A curve whose first knots are not all equal does not begin at its first control point: a straight piece leads
- * from there to where it does.
+ * A knot decides a span when the points and knots before it are known, so only 2 order - 1 of each
+ * are kept, however many there are. A curve whose first knots are not all equal does not begin at
+ * its first control point: a straight piece leads from there to where it does.
  */
 #ifndef TAKT_GEOMETRY_NURBS_H
 #define TAKT_GEOMETRY_NURBS_H
@@ -41,7 +41,8 @@ struct nurbs_piece {
 enum nurbs_result {
     NURBS_PIECE,
     NURBS_NONE, /* until the next knot */
-    NURBS_CUSP /* the curve turns back or stops within, where it has no direction: nothing more comes */
+    /* the curve turns back or stops within, where it has no direction: nothing more comes */
+    NURBS_CUSP
 };
 
 void takt_nurbs_open(struct nurbs *n, unsigned order);
@@ -50,7 +51,8 @@ void takt_nurbs_open(struct nurbs *n, unsigned order);
 void takt_nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight);
 
 /*
- * Not below the one before. No more than order knots more than points; only after takt_nurbs_next has said NURBS_NONE.
+ * Not below the one before. No more than order knots more than points; only after takt_nurbs_next
+ * has said NURBS_NONE.
  */
 void takt_nurbs_add_knot(struct nurbs *n, double knot);
 

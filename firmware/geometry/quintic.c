@@ -1,6 +1,7 @@
 /*
- * A polynomial of fifth degree in its arc length that has place, direction and curvature of a curve in a plane at both
- * ends. With u = s / L, D = end - start, T = (cos heading, sin heading), K = curvature (-sin heading, cos heading):
+ * A polynomial of fifth degree in its arc length that has place, direction and curvature of a curve
+ * in a plane at both ends. With u = s / L, D = end - start, T = (cos heading, sin heading), K =
+ * curvature (-sin heading, cos heading):
  *
  *     x(s) = start + c1 u + c2 u^2 + c3 u^3 + c4 u^4 + c5 u^5,     c1 = D - c2 - c3 - c4 - c5
  *     c2 = L^2 K0 / 2
@@ -8,11 +9,13 @@
  *     c4 = -15 D + L (8 T0 + 7 T1) + L^2 (3 K0 - 2 K1) / 2
  *     c5 =   6 D - L (3 T0 + 3 T1) - L^2 (K0 - K1) / 2
  *
- * It leaves the curve by some L^6, and its s the curve's arc length by as little: who makes pieces of a curve (nurbs.c) looks
- * that both are small. Pieces that follow each other have their ends in common, so tangent and curvature are continuous.
+ * It leaves the curve by some L^6, and its s the curve's arc length by as little: who makes pieces
+ * of a curve (nurbs.c) looks that both are small. Pieces that follow each other have their ends in
+ * common, so tangent and curvature are continuous.
  *
- * Bounds. A polynomial lies within its Bernstein coefficients. Those of x', x'' and x''' are differences of those of x;
- * those of the products x' . x'' and x' x x''' follow from them. All hold for every s, not for samples.
+ * Bounds. A polynomial lies within its Bernstein coefficients. Those of x', x'' and x''' are
+ * differences of those of x; those of the products x' . x'' and x' x x''' follow from them. All
+ * hold for every s, not for samples.
  */
 #include "geometry/quintic.h"
 
@@ -145,7 +148,10 @@ static double binomial(unsigned n, unsigned k)
     return value;
 }
 
-/* Bernstein coefficients of the derivatives by s: b_j = sum over i <= j of C(j, i) / C(5, i) c_i, and their differences. */
+/*
+ * Bernstein coefficients of the derivatives by s: b_j = sum over i <= j of C(j, i) / C(5, i) c_i,
+ * and their differences.
+ */
 struct hull {
     double first[DEGREE][2], second[DEGREE - 1][2], third[DEGREE - 2][2];
 };
@@ -189,8 +195,9 @@ static double longest(double vector[][2], unsigned count)
 }
 
 /*
- * The largest |a . b|, or |a x b|, of polynomials of degrees n and m by their Bernstein coefficients: those of the product
- * are sum over i + j = k of C(n, i) C(m, j) / C(n + m, k) a_i b_j.
+ * The largest |a . b|, or |a x b|, of polynomials of degrees n and m by their Bernstein
+ * coefficients: those of the product are sum over i + j = k of C(n, i) C(m, j) / C(n + m, k) a_i
+ * b_j.
  */
 static double product_max(double a[][2], unsigned n, double b[][2], unsigned m, bool cross)
 {
@@ -212,8 +219,9 @@ static double product_max(double a[][2], unsigned n, double b[][2], unsigned m, 
 }
 
 /*
- * Along and across count by the direction, which x' has but for its length q, nearly 1: both are divided by the least q. As
- * parts of the whole they are never above it: so a piece that is hardly curved, or whose curvature only changes, has sane ratios.
+ * Along and across count by the direction, which x' has but for its length q, nearly 1: both are
+ * divided by the least q. As parts of the whole they are never above it: so a piece that is hardly
+ * curved, or whose curvature only changes, has sane ratios.
  */
 void takt_quintic_bound(const struct curve *c, struct curve_bounds *b)
 {
@@ -238,7 +246,10 @@ void takt_quintic_bound(const struct curve *c, struct curve_bounds *b)
         maths_min(third, product_max(h.first, DEGREE - 1, h.third, DEGREE - 3, true) / least);
 }
 
-/* A piece turns by less than half a turn, so a component of its direction changes its sign once at most. */
+/*
+ * A piece turns by less than half a turn, so a component of its direction changes its sign once at
+ * most.
+ */
 bool takt_quintic_extreme(const struct curve *c, unsigned in_plane, double *s_mm)
 {
     const unsigned axis = axis_of(c, in_plane);

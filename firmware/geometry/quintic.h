@@ -9,7 +9,10 @@ void takt_quintic_tangent(const struct curve *c, double s_mm, struct point *t);
 void takt_quintic_curvature(const struct curve *c, double s_mm, struct point *k);
 void takt_quintic_bound(const struct curve *c, struct curve_bounds *b);
 
-/* Where it runs across an axis of its plane (0, 1), s > 0: it is farthest there. False: it does not turn so far. */
+/*
+ * Where it runs across an axis of its plane (0, 1), s > 0: it is farthest there. False: it does not
+ * turn so far.
+ */
 bool takt_quintic_extreme(const struct curve *c, unsigned in_plane, double *s_mm);
 
 #endif

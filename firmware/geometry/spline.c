@@ -8,7 +8,9 @@
 
 #include <string.h>
 
-/* One axis, of four control points. An axis that does not move is where they are, to the last bit. */
+/*
+ * One axis, of four control points. An axis that does not move is where they are, to the last bit.
+ */
 static void set_axis(struct curve *c, int i, const struct point control[4], double inverse_mm)
 {
     const double c0 = control[0].at[i];
@@ -35,7 +37,8 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
 }
 
 /*
- * For four control points of a uniform cubic B-spline, with d = length the way of s from one to the next:
+ * For four control points of a uniform cubic B-spline, with d = length the way of s from one to the
+ * next:
  *     start  = c1 + (c0 - 2 c1 + c2)/6            slope = (c2 - c0)/(2 d)
  *     square = (c0 - 2 c1 + c2)/(2 d^2)           cube  = (c3 - 3 c2 + 3 c1 - c0)/(6 d^3)
  */

@@ -1,6 +1,6 @@
 /*
- * A machine: everything the controller must know of the iron it moves. Filled by whoever reads a machine file;
- * takt_machine_set_default is the built-in three-axis mill.
+ * A machine: everything the controller must know of the iron it moves. Filled by whoever reads a
+ * machine file; takt_machine_set_default is the built-in three-axis mill.
  */
 #ifndef TAKT_MACHINE_H
 #define TAKT_MACHINE_H
@@ -47,12 +47,12 @@ struct machine_axis {
     double max_jerk_mm_s3;         /* > 0 */
     double travel_min_mm;          /* machine coordinates; min < max */
     double travel_max_mm;
-    double
-        increments_per_mm; /* drive position units per mm (per rad); < 0: the motor turns the other way */
-    double
-        travel_per_turn_mm; /* of its motor: increments_per_mm is checked by what the drive tells; 0: it is not */
-    double
-        velocity_units_per_mm_s; /* of its drive, and of accelerations per mm/s2; 0: increments_per_mm */
+    /* drive position units per mm (per rad); < 0: the motor turns the other way */
+    double increments_per_mm;
+    /* of its motor: increments_per_mm is checked by what the drive tells; 0: it is not */
+    double travel_per_turn_mm;
+    /* of its drive, and of accelerations per mm/s2; 0: increments_per_mm */
+    double velocity_units_per_mm_s;
     double following_error_max_mm; /* alarm beyond this lag; 0: not watched */
 
     double steps_per_mm;     /* step drive: > 0 */
@@ -83,12 +83,12 @@ struct machine {
     char name[MACHINE_NAME_MAX + 1];
     uint32_t cycle_us;               /* control cycle, 100 ... 10000 */
     uint32_t spindle_encoder_counts; /* in a revolution; 0: its angle is not measured */
-    double
-        resolution_per_mm; /* position increments of the controller per mm: chord error and reports */
+    /* position increments of the controller per mm: chord error and reports */
+    double resolution_per_mm;
     double path_tolerance_mm; /* G64 without P; 0: exact path */
     uint32_t sharp_corners;   /* 1: cutter compensation does not round outer corners */
-    uint32_t
-        override_proportional; /* 1: the feed override scales the whole diagram, not the programmed feed alone */
+    /* 1: the feed override scales the whole diagram, not the programmed feed alone */
+    uint32_t override_proportional;
     uint32_t profile;           /* enum law, of ramps */
     uint32_t landing;           /* enum landing */
     uint32_t limiter;           /* enum limiter_form, classic/limiter.h */
@@ -103,8 +103,8 @@ struct machine {
     double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
     double tool_change_s;      /* longest change of the tool by a changer at I/O nodes; > 0 */
     uint32_t can_bitrate;      /* of every bus, bit/s */
-    uint32_t
-        can_data_bitrate; /* of CAN FD, bit/s, can_bitrate ... MACHINE_DATA_BITRATE_MAX; 0: classical CAN */
+    /* of CAN FD, bit/s, can_bitrate ... MACHINE_DATA_BITRATE_MAX; 0: classical CAN */
+    uint32_t can_data_bitrate;
     uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
     uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
@@ -124,9 +124,9 @@ struct machine {
 };
 
 /*
- * X Y Z, each 100 mm/s, 1000 mm/s2, 50,000 mm/s3, travel -500 ... 500 mm, drive nodes 1 2 3 with 100,000
- * increments/mm and 1 mm following error; cycle 1 ms, 1000 increments/mm, exact path, 256 blocks of look-ahead,
- * spindle 24,000 rpm with an encoder, CAN at 1 Mbit/s.
+ * X Y Z, each 100 mm/s, 1000 mm/s2, 50,000 mm/s3, travel -500 ... 500 mm, drive nodes 1 2 3 with
+ * 100,000 increments/mm and 1 mm following error; cycle 1 ms, 1000 increments/mm, exact path, 256
+ * blocks of look-ahead, spindle 24,000 rpm with an encoder, CAN at 1 Mbit/s.
  */
 void takt_machine_set_default(struct machine *machine);
 
@@ -145,7 +145,10 @@ unsigned takt_machine_axes(const struct machine *machine);
 /* Gantries from the first on. */
 unsigned takt_machine_gantry_count(const struct machine *machine);
 
-/* Nodes of all drives on CAN, in their order: those of the axes, then the second ones of gantries. Their number. */
+/*
+ * Nodes of all drives on CAN, in their order: those of the axes, then the second ones of gantries.
+ * Their number.
+ */
 #define MACHINE_DRIVES_MAX AXIS_COUNT
 #define MACHINE_NODES_MAX  (AXIS_COUNT + MACHINE_GANTRIES_MAX) /* before it is checked */
 unsigned takt_machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX]);

@@ -14,9 +14,9 @@
 #define RANGE  2147483647.0 /* of 32 bits */
 
 /*
- * Setpoints are doubles: X mm from zero they are rounded, and differences over a cycle t turn that into noise of up to
- * 4.5e-16 X / t^2 in acceleration and 9e-16 X / t^3 in jerk. The limits are kept to 1e-4 and 1e-3 of themselves, so
- * they must stand that far above the noise.
+ * Setpoints are doubles: X mm from zero they are rounded, and differences over a cycle t turn that
+ * into noise of up to 4.5e-16 X / t^2 in acceleration and 9e-16 X / t^3 in jerk. The limits are
+ * kept to 1e-4 and 1e-3 of themselves, so they must stand that far above the noise.
  */
 #define ROUNDING_ACCELERATION 5e-12
 #define ROUNDING_JERK         1e-12
@@ -198,7 +198,10 @@ static bool check_io(const struct machine *machine, struct diagnostic *wrong)
     return true;
 }
 
-/* Its axis is one of the linear ones, on CAN; its node nobody else's but perhaps an I/O node's, which check_io sees. */
+/*
+ * Its axis is one of the linear ones, on CAN; its node nobody else's but perhaps an I/O node's,
+ * which check_io sees.
+ */
 static bool gantry_is_well(const struct machine *machine, unsigned number)
 {
     const struct machine_gantry *gantry = &machine->gantry[number];

@@ -11,8 +11,9 @@
 #include <stdbool.h>
 
 /*
- * Order of travel ends, positions beyond the drives' 32 bits, limits below the rounding of setpoints, step rates, nodes
- * used twice, forms of interpolation and feed that this build does not have, a bus that cannot carry the cycle. False: *wrong says why.
+ * Order of travel ends, positions beyond the drives' 32 bits, limits below the rounding of
+ * setpoints, step rates, nodes used twice, forms of interpolation and feed that this build does not
+ * have, a bus that cannot carry the cycle. False: *wrong says why.
  */
 bool takt_machine_check(const struct machine *machine, struct diagnostic *wrong);
 

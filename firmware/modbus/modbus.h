@@ -1,9 +1,10 @@
 /*
- * A Modbus server's protocol data unit: a request of function code and data in, the reply out. What the registers mean
- * is the business of a struct modbus_map; how frames travel, of rtu.h and tcp.h.
+ * A Modbus server's protocol data unit: a request of function code and data in, the reply out. What
+ * the registers mean is the business of a struct modbus_map; how frames travel, of rtu.h and tcp.h.
  *
- * Functions (Modbus Application Protocol 1.1b3): 01 read coils, 03 read holding registers, 04 read input registers,
- * 05 and 06 write one, 15 and 16 write several, 23 write and read holding registers. Any other: exception 01.
+ * Functions (Modbus Application Protocol 1.1b3): 01 read coils, 03 read holding registers, 04 read
+ * input registers, 05 and 06 write one, 15 and 16 write several, 23 write and read holding
+ * registers. Any other: exception 01.
  */
 #ifndef TAKT_MODBUS_MODBUS_H
 #define TAKT_MODBUS_MODBUS_H
@@ -34,9 +35,9 @@ enum modbus_exception {
 enum modbus_table { MODBUS_COILS, MODBUS_INPUTS, MODBUS_HOLDINGS };
 
 /*
- * The registers behind a server. Data travels as on the wire: words with the high byte first, bits eight to a byte, the
- * first in bit 0. address + count is at most 65536 and count at least 1 when these are called. A request that
- * is refused has changed nothing.
+ * The registers behind a server. Data travels as on the wire: words with the high byte first, bits
+ * eight to a byte, the first in bit 0. address + count is at most 65536 and count at least 1 when
+ * these are called. A request that is refused has changed nothing.
  */
 struct modbus_map {
     /* Fills data: 2 count bytes for words, (count + 7) / 8 for coils, unused bits 0. */
@@ -55,8 +56,8 @@ size_t takt_modbus_answer(const struct modbus_map *map, const uint8_t *request, 
                           uint8_t *reply);
 
 /*
- * Length that the request whose first bytes these are will have; 0: more bytes are needed to tell, or the function is
- * not one of ours.
+ * Length that the request whose first bytes these are will have; 0: more bytes are needed to tell,
+ * or the function is not one of ours.
  */
 size_t takt_modbus_request_length(const uint8_t *request, size_t length);
 

@@ -3,7 +3,8 @@
  *
  *     transaction (2 bytes), protocol 0 (2), length of what follows (2), unit, PDU
  *
- * A stream cannot be resynchronised: after a header that makes no sense the connection is to be closed.
+ * A stream cannot be resynchronised: after a header that makes no sense the connection is to be
+ * closed.
  */
 #ifndef TAKT_MODBUS_TCP_H
 #define TAKT_MODBUS_TCP_H
@@ -28,8 +29,9 @@ struct modbus_tcp {
 void takt_modbus_tcp_init(struct modbus_tcp *tcp);
 
 /*
- * Takes bytes from *data, *size of them, and moves both on, up to the end of a request: MODBUS_TCP_REPLY, the reply
- * is in reply[MODBUS_TCP_MAX], *reply_length bytes. Any unit is answered, as itself.
+ * Takes bytes from *data, *size of them, and moves both on, up to the end of a request:
+ * MODBUS_TCP_REPLY, the reply is in reply[MODBUS_TCP_MAX], *reply_length bytes. Any unit is
+ * answered, as itself.
  */
 enum modbus_tcp_result takt_modbus_tcp_take(struct modbus_tcp *tcp, const struct modbus_map *map,
                                             const uint8_t **data, size_t *size, uint8_t *reply,

@@ -3,8 +3,9 @@
 #include "base/assert.h"
 
 /*
- * The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a cycle. The inputs are not
- * written, which would take as long as the window is: until a box has had n new ones it counts the old ones up by step.
+ * The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a
+ * cycle. The inputs are not written, which would take as long as the window is: until a box has had
+ * n new ones it counts the old ones up by step.
  */
 void takt_average_start(struct average *a, enum ramp_profile profile, uint32_t cycles, uint64_t at,
                         uint64_t step)

@@ -1,6 +1,7 @@
 /*
- * The moving average that makes the setpoint's path position out of the trapezoidal reference's: one to three boxes, one after the
- * other (plan/profile.h). Exact: sums of whole path units, modulo 2^64, of which only differences are used.
+ * The moving average that makes the setpoint's path position out of the trapezoidal reference's:
+ * one to three boxes, one after the other (plan/profile.h). Exact: sums of whole path units, modulo
+ * 2^64, of which only differences are used.
  */
 #ifndef TAKT_MOTION_AVERAGE_H
 #define TAKT_MOTION_AVERAGE_H
@@ -9,7 +10,10 @@
 
 #include <stdint.h>
 
-/* Two boxes of RAMP_PROFILE_SMOOTH need most: the second is half as long. Those of RAMP_PROFILE_GENTLE are much shorter (takt_ramp_profile_cycles_max). */
+/*
+ * Two boxes of RAMP_PROFILE_SMOOTH need most: the second is half as long. Those of
+ * RAMP_PROFILE_GENTLE are much shorter (takt_ramp_profile_cycles_max).
+ */
 #define AVERAGE_INPUTS_MAX (RAMP_PROFILE_CYCLES_MAX + RAMP_PROFILE_CYCLES_MAX / 2)
 
 struct average_box {
@@ -31,8 +35,8 @@ struct average {
 };
 
 /*
- * The trapezoidal reference is at this position and has always moved by step, path units a cycle. cycles: of the first box,
- * 1 ... takt_ramp_profile_cycles_max.
+ * The trapezoidal reference is at this position and has always moved by step, path units a cycle.
+ * cycles: of the first box, 1 ... takt_ramp_profile_cycles_max.
  */
 void takt_average_start(struct average *a, enum ramp_profile profile, uint32_t cycles, uint64_t at,
                         uint64_t step);
@@ -43,7 +47,10 @@ void takt_average_push(struct average *a, uint64_t at);
 /* How far the average follows behind the newest input: path units, >= 0. 0 at rest. */
 static inline double average_lag(const struct average *a)
 {
-    /* the last sum is product times the average, modulo 2^64; product times the newest input minus it is small */
+    /*
+     * the last sum is product times the average, modulo 2^64; product times the newest input minus
+     * it is small
+     */
     return (double)(int64_t)(a->at * a->scale - a->box[a->boxes - 1].sum) / a->product;
 }
 

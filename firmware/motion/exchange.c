@@ -1,6 +1,7 @@
 /*
- * Ceilings go from the background to the cycle: the cycle asks for one, the background builds it in the one of two that is free,
- * and the cycle goes over to it where it may. Neither waits for the other.
+ * Ceilings go from the background to the cycle: the cycle asks for one, the background builds it in
+ * the one of two that is free, and the cycle goes over to it where it may. Neither waits for the
+ * other.
  */
 #include "motion/exchange.h"
 
@@ -9,7 +10,10 @@
 #include "motion/motion.h"
 #include "plan/path_unit.h"
 
-/* A ceiling that had no room for all blocks is made anew when the trapezoidal reference has gone this part of its length. */
+/*
+ * A ceiling that had no room for all blocks is made anew when the trapezoidal reference has gone
+ * this part of its length.
+ */
 #define RENEW_PART 0.25
 
 /* -- the background -- */
@@ -59,7 +63,10 @@ static struct ceiling_request take_request(const struct motion *m, uint32_t *res
     return request;
 }
 
-/* Over all blocks, or as far as there was room and the trapezoidal reference has not come near the end of that. */
+/*
+ * Over all blocks, or as far as there was room and the trapezoidal reference has not come near the
+ * end of that.
+ */
 static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t reference)
 {
     TAKT_ASSERT(c->complete || c->count > 0);
@@ -69,7 +76,10 @@ static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_
     return path_mm(c->origin, reference) < RENEW_PART * c->end_mm[c->count - 1];
 }
 
-/* The path that was asked about has been dropped since: blocks of another one may lie in its ring by now. */
+/*
+ * The path that was asked about has been dropped since: blocks of another one may lie in its ring
+ * by now.
+ */
 static bool is_dropped(const struct motion *m, uint32_t restarts)
 {
     return restarts != handoff_get_count(&m->restarts);
@@ -144,7 +154,10 @@ static uint64_t piece_leave(const struct motion *m)
     return path_ceiling_leave(here->ceiling, here->piece);
 }
 
-/* An override asked for while the trapezoidal reference brakes waits for the next block (seed 003 section 2). 0 is a hold. */
+/*
+ * An override asked for while the trapezoidal reference brakes waits for the next block (seed 003
+ * section 2). 0 is a hold.
+ */
 static void ask(struct motion *m, const struct motion_operator *wanted)
 {
     const uint64_t leave = piece_leave(m);
@@ -171,7 +184,10 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     handoff_set_flag(&m->wanted, true);
 }
 
-/* The trapezoidal reference has not taken the last ceiling: that is free, and another one is needed. */
+/*
+ * The trapezoidal reference has not taken the last ceiling: that is free, and another one is
+ * needed.
+ */
 static void note_refused(struct motion *m)
 {
     TAKT_ASSERT(m->active < 2);

@@ -1,6 +1,6 @@
 /*
- * Blocks whose setpoints somebody else makes: motion stands before them (MOTION_HANDED_OVER) and is told what becomes of
- * them.
+ * Blocks whose setpoints somebody else makes: motion stands before them (MOTION_HANDED_OVER) and is
+ * told what becomes of them.
  */
 #ifndef TAKT_MOTION_HANDOVER_H
 #define TAKT_MOTION_HANDOVER_H
@@ -9,16 +9,25 @@
 
 #include <stdbool.h>
 
-/* From now on motion hands over blocks that follow the spindle; else it runs them at the commanded speed. */
+/*
+ * From now on motion hands over blocks that follow the spindle; else it runs them at the commanded
+ * speed.
+ */
 void takt_handover_allow(struct motion *m);
 
 /* The same of all blocks but probing moves. */
 void takt_handover_allow_all(struct motion *m);
 
-/* The same, but blocks in which rotary axes move stay motion's. Before anything is pushed onto its path. */
+/*
+ * The same, but blocks in which rotary axes move stay motion's. Before anything is pushed onto its
+ * path.
+ */
 void takt_handover_allow_linear(struct motion *m);
 
-/* A cycle was made in the path's oldest block. feed: of the setpoint, as it is programmed. Fills the record as takt_motion_cycle. */
+/*
+ * A cycle was made in the path's oldest block. feed: of the setpoint, as it is programmed. Fills
+ * the record as takt_motion_cycle.
+ */
 void takt_handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s,
                              bool landed, struct cycle_record *record);
 

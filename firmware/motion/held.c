@@ -1,6 +1,7 @@
 /*
- * Goal: to the rest of the cycle a setpoint that the hold moves looks like one that the trapezoidal reference moves: it is as far ahead
- * as it would be if the setpoint had always moved as it does now, and the averages begin anew when it goes on.
+ * Goal: to the rest of the cycle a setpoint that the hold moves looks like one that the trapezoidal
+ * reference moves: it is as far ahead as it would be if the setpoint had always moved as it does
+ * now, and the averages begin anew when it goes on.
  */
 #include "motion/held.h"
 
@@ -25,7 +26,9 @@ void takt_held_end(struct motion *m)
     m->holds = false;
 }
 
-/* The trapezoidal reference is where it would be if the setpoint had always moved as it does now. */
+/*
+ * The trapezoidal reference is where it would be if the setpoint had always moved as it does now.
+ */
 static void follow_hold(struct motion *m)
 {
     const struct hold *h = &m->mover.beside.hold;
@@ -48,8 +51,8 @@ static bool may_hold(const struct motion *m)
 }
 
 /*
- * What the averages' inputs leave of their memory is for the pieces of the hold: once for all that it looks at in a span. False:
- * too little.
+ * What the averages' inputs leave of their memory is for the pieces of the hold: once for all that
+ * it looks at in a span. False: too little.
  */
 static bool has_memory(struct motion *m)
 {

@@ -1,28 +1,32 @@
 /*
- * Goal: on a curve the axes come to rest, and up to speed again, as quickly as they can at each place of it.
+ * Goal: on a curve the axes come to rest, and up to speed again, as quickly as they can at each
+ * place of it.
  *
- * With the place u(t) on the curve x(u), rate r = u', change q = r' and w = q', the chain rule gives for every axis
+ * With the place u(t) on the curve x(u), rate r = u', change q = r' and w = q', the chain rule
+ * gives for every axis
  *
  *     x''  of time:   x' q + x'' r^2                       within A
  *     x''' of time:   x' w + 3 x'' r q + x''' r^3          within J
  *
- * with their signs: an axis that the curve speeds up can be braked twice as hard, one that it slows down not at all. Each
- * cycle takes the hardest w, of a few, after which there is still a way on with both kept all along it, and goes along that
- * way if there is none. There are two such ways:
+ * with their signs: an axis that the curve speeds up can be braked twice as hard, one that it slows
+ * down not at all. Each cycle takes the hardest w, of a few, after which there is still a way on
+ * with both kept all along it, and goes along that way if there is none. There are two such ways:
  *
  *     to rest        the change goes by -e to -c, is kept, and goes by e to 0 as the rate does, from r = c^2/2e on
  *     to reference.h      the change goes by e to 0. At a constant rate that is not above that of the pieces everything is
  *                    kept, and the trapezoidal reference can take over: its own condition for what lies ahead is asked for there
  *
- * The first needs the pieces as far as the setpoint comes, the second few of them, and is all that a start has. So whatever
- * follows, the way that was found last can be gone on with, by which no limit is ever broken.
+ * The first needs the pieces as far as the setpoint comes, the second few of them, and is all that
+ * a start has. So whatever follows, the way that was found last can be gone on with, by which no
+ * limit is ever broken.
  *
  *     change q |\        w       e          each cycle: w, then the rest of the way found last
  *              | \      /|\     /
  *            0 +--\----/-+-\---/-------- time
  *              |   \__/  |  \_/
  *
- * Setpoints are samples of x(u(t)), so their third differences are averages of its third derivative.
+ * Setpoints are samples of x(u(t)), so their third differences are averages of its third
+ * derivative.
  */
 #include "motion/hold.h"
 
@@ -36,7 +40,10 @@
 /* Parts that the ease is looked at in. */
 #define EASE_PARTS 4
 
-/* Parts in which a change that is kept is looked at; and what is kept of the hardest at the place where it is found. */
+/*
+ * Parts in which a change that is kept is looked at; and what is kept of the hardest at the place
+ * where it is found.
+ */
 #define KEEP_PARTS 3
 #define KEPT_PART  0.85f
 
@@ -55,13 +62,19 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 /* The rate is so near to that of the ceiling that the trapezoidal reference goes on by itself. */
 #define ARRIVED_PART 1e-3f
 
-/* Blocks up to what begins at the trapezoidal reference that are looked at for each state tried, at most. */
+/*
+ * Blocks up to what begins at the trapezoidal reference that are looked at for each state tried, at
+ * most.
+ */
 #define BLOCKS_MAX 16
 
 /* How many of these are found to be fast enough in a cycle, at most. */
 #define CLEAR_MAX 8
 
-/* After this many states in a cycle that the trapezoidal reference could not go on from, no other is looked for. */
+/*
+ * After this many states in a cycle that the trapezoidal reference could not go on from, no other
+ * is looked for.
+ */
 #define REFUSALS_MAX 2
 
 /* Rounding. */
@@ -104,8 +117,9 @@ static void pass_clear(struct hold *h, const struct path *path)
 }
 
 /*
- * Is the rate of a trapezoidal reference at a place not above the highest of what it has come to, from the setpoint on? A block from S
- * on begins for it at S - c b, b half the window and a margin. Pieces.
+ * Is the rate of a trapezoidal reference at a place not above the highest of what it has come to,
+ * from the setpoint on? A block from S on begins for it at S - c b, b half the window and a margin.
+ * Pieces.
  */
 static bool tops_allow(const struct hold *h, const struct path *path, const struct reference *l,
                        const struct hold_trial *s, float ahead)
@@ -130,9 +144,9 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
 }
 
 /*
- * The trapezoidal reference of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
- * cycle in which the change comes to 0, and keeps its feed in the next one (takt_reference_follow). To stop it may be faster than the
- * overrides ask for.
+ * The trapezoidal reference of a setpoint that moves at a constant rate is half the window before
+ * it. It takes over at the end of the cycle in which the change comes to 0, and keeps its feed in
+ * the next one (takt_reference_follow). To stop it may be faster than the overrides ask for.
  */
 static bool reference_can_take(const struct hold *h, const struct path *path,
                                const struct reference *l, const struct hold_trial *s, bool stop)
@@ -167,9 +181,9 @@ static bool can_change(struct hold *h, struct hold_trial *s, float to, float w)
 }
 
 /*
- * To come to rest the change goes to 0 at no higher a rate than it would have if nothing better was found, r + q^2/2e: where the
- * axes could be far faster than the feed, a softer ease would exceed that. It takes over from a trapezoidal reference that has that
- * rate already, half a window ahead.
+ * To come to rest the change goes to 0 at no higher a rate than it would have if nothing better was
+ * found, r + q^2/2e: where the axes could be far faster than the feed, a softer ease would exceed
+ * that. It takes over from a trapezoidal reference that has that rate already, half a window ahead.
  */
 static float highest_rate(const struct hold *h, const struct reference *l)
 {
@@ -212,8 +226,8 @@ static bool can_keep(struct hold *h, struct hold_trial *s, float to)
 }
 
 /*
- * To rest: the change goes by -e to -c, is kept, and goes back to 0 by e. It is kept where c is less than without that:
- * r + (q |q| - c^2)/2e = c^2/2e where q > 0, else with -q^2.
+ * To rest: the change goes by -e to -c, is kept, and goes back to 0 by e. It is kept where c is
+ * less than without that: r + (q |q| - c^2)/2e = c^2/2e where q > 0, else with -q^2.
  */
 static bool can_rest(struct hold *h, struct hold_trial s, float e, float most,
                      struct hold_ending *ending)
@@ -228,7 +242,9 @@ static bool can_rest(struct hold *h, struct hold_trial s, float e, float most,
            can_keep(h, &s, 0.5f * peak * peak / e) && can_change(h, &s, 0.0f, e);
 }
 
-/* The change goes to 0 by e, at a rate and place from which the trapezoidal reference could go on. */
+/*
+ * The change goes to 0 by e, at a rate and place from which the trapezoidal reference could go on.
+ */
 static bool can_ease(struct hold *h, const struct path *path, const struct reference *l,
                      struct hold_trial s, float e, bool stop, struct hold_ending *ending)
 {
@@ -245,8 +261,9 @@ static bool can_ease(struct hold *h, const struct path *path, const struct refer
 }
 
 /*
- * How what follows this state ends: as it is known, or for what is tried first in another way, each cycle the next of them.
- * To stop it ends at rest, or where the trapezoidal reference could go on, otherwise there. False: no way was found.
+ * How what follows this state ends: as it is known, or for what is tried first in another way, each
+ * cycle the next of them. To stop it ends at rest, or where the trapezoidal reference could go on,
+ * otherwise there. False: no way was found.
  */
 static bool find_ending(struct hold *h, const struct path *path, const struct reference *l,
                         const struct hold_trial *s, float hardest, bool stop, bool first,
@@ -313,7 +330,10 @@ static double go_to(struct hold *h, double to, double w, double left)
     return left - t;
 }
 
-/* The change that is to be kept is, as long as the rate is too high for the ease to end it at rest. What is left of the cycle then. */
+/*
+ * The change that is to be kept is, as long as the rate is too high for the ease to end it at rest.
+ * What is left of the cycle then.
+ */
 static double keep_change(struct hold *h, double left)
 {
     const double q = h->place.change;
@@ -350,8 +370,8 @@ static void go_on_ending(struct hold *h)
 }
 
 /*
- * True: it has gone on by a w of the direction wanted, or at the change it has. To rest in two cycles, one of w and one of
- * the ease that takes back all of the change: q + w = -2 (r + q + w/2).
+ * True: it has gone on by a w of the direction wanted, or at the change it has. To rest in two
+ * cycles, one of w and one of the ease that takes back all of the change: q + w = -2 (r + q + w/2).
  */
 static bool find_step(struct hold *h, const struct path *path, const struct reference *l, bool stop)
 {
@@ -381,7 +401,9 @@ static bool find_step(struct hold *h, const struct path *path, const struct refe
            try_step(h, path, l, -LESS_PART * change, hardest, stop, h->ending.ease == 0.0);
 }
 
-/* Does it have a change, or must it still brake: it may be too fast for the trapezoidal reference. */
+/*
+ * Does it have a change, or must it still brake: it may be too fast for the trapezoidal reference.
+ */
 static bool is_changing(const struct hold *h)
 {
     return h->place.change != 0.0 || h->ending.peak > 0.0;
@@ -432,7 +454,10 @@ bool takt_hold_step(struct hold *h, struct path *path, const struct reference *l
     return true;
 }
 
-/* The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are as good as at rest. */
+/*
+ * The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are
+ * as good as at rest.
+ */
 bool takt_hold_begin(struct hold *h, struct path *path, const struct reference *l, double at,
                      const double way[2])
 {

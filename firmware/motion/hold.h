@@ -1,7 +1,9 @@
 /*
- * A feed hold on a smoothed curve or an arc, and the start after it: as quickly as the axes can at each place of the curve.
+ * A feed hold on a smoothed curve or an arc, and the start after it: as quickly as the axes can at
+ * each place of the curve.
  *
- * The place on the curve u, in pieces, moves by its rate r = u', its change q = r' and a constant w = q' in each cycle:
+ * The place on the curve u, in pieces, moves by its rate r = u', its change q = r' and a constant w
+ * = q' in each cycle:
  *
  *     rate |‾‾‾\                 change q |   ___
  *          |    \                         |\_/   \  /     w: the hardest that leaves a way back to a constant rate
@@ -25,8 +27,9 @@
 #define HOLD_PIECES_MIN 8
 
 /*
- * A piece is stored as its derivatives, by axis: mm (rad) per piece, and per piece^2 where it begins and where it ends; the second
- * one is linear between. Behind them its highest rate, whatever the overrides are: pieces a cycle.
+ * A piece is stored as its derivatives, by axis: mm (rad) per piece, and per piece^2 where it
+ * begins and where it ends; the second one is linear between. Behind them its highest rate,
+ * whatever the overrides are: pieces a cycle.
  *
  *     first[axes] | second[axes] | second_end[axes] | top
  */
@@ -43,8 +46,8 @@ struct hold_state {
 };
 
 /*
- * How it goes on if nothing better is found: the change goes by -ease to -peak, if that is not 0, and by ease to 0. ease 0: no way
- * has been found yet, and there is no peak.
+ * How it goes on if nothing better is found: the change goes by -ease to -peak, if that is not 0,
+ * and by ease to 0. ease 0: no way has been found yet, and there is no peak.
  */
 struct hold_ending {
     double ease;
@@ -69,8 +72,8 @@ struct hold {
     uint32_t end;   /* the pieces from it on to before this one are known */
     double length;  /* path units of a piece */
     float per_mm_s; /* pieces a cycle for mm/s of path */
-    uint8_t plane
-        [2]; /* axes that an arc turns, among those above, and by how much on a piece: a line by 0 */
+    /* axes that an arc turns, among those above, and by how much on a piece: a line by 0 */
+    uint8_t plane[2];
     float turn_cos, turn_sin;
     float off_second; /* derivatives of an arc differ from those of its pieces by this at most */
     float off_third;
@@ -93,19 +96,25 @@ static inline const float *hold_piece(const struct hold *h, uint32_t k)
     return h->store + (k % h->pieces) * hold_stride(h->axes);
 }
 
-/* Before it is asked for the first time: the axes, and memory for pieces. False: that is too little. */
+/*
+ * Before it is asked for the first time: the axes, and memory for pieces. False: that is too
+ * little.
+ */
 bool takt_hold_prepare(struct hold *h, const struct plan_limits *limits, float *store,
                        size_t floats);
 
 /*
- * Can it take over in this cycle, and slow down? The setpoint is at a position of the path's first block, path units, and
- * has been moved by these ways in the last two cycles. Some pieces ahead are read each time, so that it may be able to in a
- * later cycle.
+ * Can it take over in this cycle, and slow down? The setpoint is at a position of the path's first
+ * block, path units, and has been moved by these ways in the last two cycles. Some pieces ahead are
+ * read each time, so that it may be able to in a later cycle.
  */
 bool takt_hold_begin(struct hold *h, struct path *path, const struct reference *l, double at,
                      const double way[2]);
 
-/* One cycle: slows down as hard as it can, or speeds up. False: it cannot go on by itself; the rate is constant. */
+/*
+ * One cycle: slows down as hard as it can, or speeds up. False: it cannot go on by itself; the rate
+ * is constant.
+ */
 bool takt_hold_step(struct hold *h, struct path *path, const struct reference *l, bool stop);
 
 /* Path units from the start of its piece, and in a cycle. */

@@ -1,19 +1,25 @@
 /*
- * Derivatives are bounded over parts of the way: with u, r and q between the values at both ends, which they pass from one
- * to the other without turning back (formulas: hold.c).
+ * Derivatives are bounded over parts of the way: with u, r and q between the values at both ends,
+ * which they pass from one to the other without turning back (formulas: hold.c).
  */
 #include "motion/hold_axes.h"
 
 #include "base/assert.h"
 #include "smooth/single.h"
 
-/* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
+/*
+ * Where the axes hardly move: the rate changes by no more than this part of what it began with in a
+ * cycle.
+ */
 #define CHANGE_PART 0.2f
 
 /* Rounding. */
 #define SLACK 1e-5f
 
-/* What is tried in a cycle is looked at on so many pieces in all: what was found before can always be gone on with. */
+/*
+ * What is tried in a cycle is looked at on so many pieces in all: what was found before can always
+ * be gone on with.
+ */
 #define LOOKED_MAX 72
 
 static inline struct range between(float a, float b)
@@ -170,7 +176,10 @@ float takt_hold_brake(const struct hold *h)
     return most;
 }
 
-/* What an axis has left for x' w in this cycle: of J beside 3 x'' r q + x''' r^3, of A beside x' q + x'' r^2. */
+/*
+ * What an axis has left for x' w in this cycle: of J beside 3 x'' r q + x''' r^3, of A beside x' q
+ * + x'' r^2.
+ */
 static struct range left_of(const struct hold *h, unsigned i, float x1, float x2, float x3)
 {
     const float r = (float)h->place.rate;

@@ -1,5 +1,6 @@
 /*
- * What the axes allow of a change of the rate of a hold (hold.c): on a part of the way, and where it is.
+ * What the axes allow of a change of the rate of a hold (hold.c): on a part of the way, and where
+ * it is.
  */
 #ifndef TAKT_MOTION_HOLD_AXES_H
 #define TAKT_MOTION_HOLD_AXES_H
@@ -14,8 +15,8 @@ struct range {
 };
 
 /*
- * A state that is tried, in single precision: what rounding does to it is less than the bounds leave. What is gone along is
- * in double precision.
+ * A state that is tried, in single precision: what rounding does to it is less than the bounds
+ * leave. What is gone along is in double precision.
  */
 struct hold_trial {
     float at;
@@ -23,11 +24,17 @@ struct hold_trial {
     float change;
 };
 
-/* Can it go from one state to another by w, on pieces that are known, and not back? In one direction of the change. */
+/*
+ * Can it go from one state to another by w, on pieces that are known, and not back? In one
+ * direction of the change.
+ */
 bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
                       float w);
 
-/* How fast the rate may fall by the acceleration of the axes where it is: 0 and more; infinite where none moves. */
+/*
+ * How fast the rate may fall by the acceleration of the axes where it is: 0 and more; infinite
+ * where none moves.
+ */
 float takt_hold_brake(const struct hold *h);
 
 /* w between which every axis keeps A and J where it is; limited where none moves. */

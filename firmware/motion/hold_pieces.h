@@ -1,6 +1,6 @@
 /*
- * The curve ahead of a setpoint that a hold moves (hold.h), in pieces of one length: of a smoothed curve those that the path has,
- * of an arc parts of its block.
+ * The curve ahead of a setpoint that a hold moves (hold.h), in pieces of one length: of a smoothed
+ * curve those that the path has, of an arc parts of its block.
  */
 #ifndef TAKT_MOTION_HOLD_PIECES_H
 #define TAKT_MOTION_HOLD_PIECES_H
@@ -11,8 +11,9 @@
 #include <stdint.h>
 
 /*
- * The pieces from the setpoint on, which is `at` path units behind the start of the path's first block and has gone `way` in the
- * last cycle; those that are known stay. False: no hold is made for what it is on.
+ * The pieces from the setpoint on, which is `at` path units behind the start of the path's first
+ * block and has gone `way` in the last cycle; those that are known stay. False: no hold is made for
+ * what it is on.
  */
 bool takt_hold_look(struct hold *h, struct path *path, double at, double way);
 

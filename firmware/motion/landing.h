@@ -1,12 +1,14 @@
 /*
  * Landing in motion: a setpoint falls on a junction exactly.
  *
- * The setpoint follows the trapezoidal reference by (N - 1)/2 cycles when that has kept its feed for the averaging window N. So
- * the trapezoidal reference slows down from w to w' in n cycles and then keeps w' for N: the setpoint is then
+ * The setpoint follows the trapezoidal reference by (N - 1)/2 cycles when that has kept its feed
+ * for the averaging window N. So the trapezoidal reference slows down from w to w' in n cycles and
+ * then keeps w' for N: the setpoint is then
  *     n (w + w')/2 + w' (N + 1)/2
- * beyond where the trapezoidal reference was. n is the least whole number for which w' need not be above the junction's feed; w'
- * makes the sum the distance of the junction. It is begun as late as possible: the deceleration is then nearly the full
- * one, and w' below the junction's feed by about as much as one cycle of it.
+ * beyond where the trapezoidal reference was. n is the least whole number for which w' need not be
+ * above the junction's feed; w' makes the sum the distance of the junction. It is begun as late as
+ * possible: the deceleration is then nearly the full one, and w' below the junction's feed by about
+ * as much as one cycle of it.
  */
 #ifndef TAKT_MOTION_LANDING_H
 #define TAKT_MOTION_LANDING_H
@@ -38,7 +40,10 @@ struct landing_run {
 /* Can the junction be landed on from here? Fills ramp, total and the feeds of run. */
 bool takt_landing_solve(const struct landing_case *l, struct landing_run *run);
 
-/* Distance of the trapezoidal reference from the start of the run after this many of its cycles, and its feed then. */
+/*
+ * Distance of the trapezoidal reference from the start of the run after this many of its cycles,
+ * and its feed then.
+ */
 double takt_landing_distance(const struct landing_run *run, uint32_t cycle, double *feed);
 
 #endif

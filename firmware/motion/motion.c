@@ -11,7 +11,10 @@
 
 #include <string.h>
 
-/* A setpoint this close to a junction that it lands on in motion is on it: rounding of the trapezoidal reference's positions, path units. */
+/*
+ * A setpoint this close to a junction that it lands on in motion is on it: rounding of the
+ * trapezoidal reference's positions, path units.
+ */
 #define LANDED_UNITS 8.0
 
 /* Waits without a cycle, and blocks, that one cycle passes at most. */
@@ -76,8 +79,8 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
 }
 
 /*
- * Goes through what happens at rest; of that only dwells and changes of the tool that wait are read. MOTION_CYCLE: the axes move on in a block; NULL: they
- * wait.
+ * Goes through what happens at rest; of that only dwells and changes of the tool that wait are
+ * read. MOTION_CYCLE: the axes move on in a block; NULL: they wait.
  */
 static enum motion_result serve(struct motion *m, const struct motion_operator *wanted,
                                 const struct block **block)
@@ -149,15 +152,18 @@ static bool ends_at_rest(const struct motion *m)
     return takt_span_stops(m->path, m->path->first);
 }
 
-/* Does the setpoint fall on the junction behind the oldest block in motion, but for rounding? At rest it is there exactly. */
+/*
+ * Does the setpoint fall on the junction behind the oldest block in motion, but for rounding? At
+ * rest it is there exactly.
+ */
 static bool lands(const struct motion *m)
 {
     return takt_span_lands(m->path, m->path->first);
 }
 
 /*
- * The setpoint's distance from the start of its block and that one's length, path units, after passing the blocks that it
- * has left from b on: those are not read.
+ * The setpoint's distance from the start of its block and that one's length, path units, after
+ * passing the blocks that it has left from b on: those are not read.
  */
 static double find_block(struct motion *m, const struct block *b, double *length)
 {
@@ -243,8 +249,8 @@ static void move_reference(struct motion *m, bool hold)
 }
 
 /*
- * May the stop be left? Not in the cycle that has passed something there: what an event asks to be waited for is known
- * only after it.
+ * May the stop be left? Not in the cycle that has passed something there: what an event asks to be
+ * waited for is known only after it.
  */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
@@ -252,7 +258,10 @@ static bool may_leave(const struct motion *m, const struct motion_operator *want
            m->passed_first == m->path->first && !wanted->wait;
 }
 
-/* The trapezoidal reference, its average, the path there, from block b on. Returns the block it leads to. */
+/*
+ * The trapezoidal reference, its average, the path there, from block b on. Returns the block it
+ * leads to.
+ */
 static const struct block *move_on(struct motion *m, const struct motion_operator *wanted,
                                    const struct block *b, struct cycle_record *record)
 {
@@ -295,7 +304,10 @@ static double limiter_of(const struct motion *m, const struct block *b)
     return maths_min(1.0, b->feed_cap_mm_s / (b->feed_program_mm_s * m->request.feed_ratio));
 }
 
-/* In a cycle that has little else to do. Where it has stalled the axes come to rest, and that is the end. */
+/*
+ * In a cycle that has little else to do. Where it has stalled the axes come to rest, and that is
+ * the end.
+ */
 static void watch(struct motion *m, const struct motion_operator *wanted, const struct block *b)
 {
     if (m->busy || m->cycles % WATCH_EVERY_CYCLES != WATCH_EVERY_CYCLES - 1) {
@@ -362,7 +374,10 @@ static void fill_record(struct motion *m, const struct block *b, struct cycle_re
     m->cycles++;
 }
 
-/* A part of the block behind, in a cycle that has little else to do: the one that comes to it need not read it. */
+/*
+ * A part of the block behind, in a cycle that has little else to do: the one that comes to it need
+ * not read it.
+ */
 static void read_ahead(struct motion *m)
 {
     const uint32_t next = m->path->first + 1;

@@ -1,10 +1,12 @@
 /*
- * The control cycle: the path ahead and its feed ceiling in, one setpoint of every axis out, once a cycle.
+ * The control cycle: the path ahead and its feed ceiling in, one setpoint of every axis out, once a
+ * cycle.
  *
  *     trapezoidal reference (reference.h) -> average (average.h) -> position on the path -> curve -> setpoint
  *
- * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer that many cycles later, so that
- * every build makes the same setpoints as long as its background is not later than that.
+ * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer that many
+ * cycles later, so that every build makes the same setpoints as long as its background is not later
+ * than that.
  */
 #ifndef TAKT_MOTION_MOTION_H
 #define TAKT_MOTION_MOTION_H
@@ -29,7 +31,10 @@ enum motion_result {
     MOTION_NOT_YET, /* nothing has been planned yet: no cycle was made */
     MOTION_EMPTY,   /* everything has been done, but no end of program came: no cycle was made */
     MOTION_STALLED, /* the path is not gone on along, for no reason (watch.h): no cycle was made */
-    MOTION_HANDED_OVER /* the axes stand where a block begins that follows the spindle (handover.h): no cycle was made */
+    /*
+     * the axes stand where a block begins that follows the spindle (handover.h): no cycle was made
+     */
+    MOTION_HANDED_OVER
 };
 
 /* What the operator wants, in this cycle. */
@@ -46,7 +51,10 @@ struct motion_operator {
     double spindle_rev_s; /* >= 0; 0 holds them */
 };
 
-/* A hold lies at the end of the averages' memory, and the pieces that it looks at where their inputs leave room. */
+/*
+ * A hold lies at the end of the averages' memory, and the pieces that it looks at where their
+ * inputs leave room.
+ */
 #define MOTION_STORE_MAX                                                                           \
     ((sizeof(struct average) - offsetof(struct average, input) - sizeof(struct hold)) /            \
      sizeof(float))
@@ -71,14 +79,14 @@ struct motion {
     bool looks;        /* or looks whether it can be */
     bool done;         /* the oldest block: the next cycle passes it */
     bool changes_tool; /* this cycle stands at a tool change that is not passed */
-    bool
-        busy; /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
+    /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
+    bool busy;
     uint32_t current; /* the block of the last cycle */
     uint32_t ahead;   /* the block of the trapezoidal reference, when a ceiling was asked for */
     uint64_t rested;  /* cycles at rest since the last stop was landed on */
     uint64_t waited;  /* cycles of the wait that is being executed */
-    uint32_t
-        passed_first; /* the path's first before this cycle: blocks from there to first were passed in it */
+    /* the path's first before this cycle: blocks from there to first were passed in it */
+    uint32_t passed_first;
     uint64_t late; /* exchanges for which no ceiling was ready */
     struct reference reference;
     union {
@@ -110,14 +118,23 @@ struct motion {
 void takt_motion_init(struct motion *m, struct path *path, const struct point *start,
                       bool proportional);
 
-/* Background: what a ceiling is asked for; NULL: none is. Until it has been made the path may smooth motions. */
+/*
+ * Background: what a ceiling is asked for; NULL: none is. Until it has been made the path may
+ * smooth motions.
+ */
 const struct ceiling_request *takt_motion_wanted(struct motion *m);
 /* Background: makes it, from all blocks pushed so far. Needs takt_motion_wanted. */
 void takt_motion_build(struct motion *m);
-/* Background: blocks that the path has beyond the trapezoidal reference's, as that was when a ceiling was asked for. */
+/*
+ * Background: blocks that the path has beyond the trapezoidal reference's, as that was when a
+ * ceiling was asked for.
+ */
 uint32_t takt_motion_ahead(struct motion *m);
 
-/* In a control cycle before the first of them: takes the first ceiling, if it is there, so that the first need not. */
+/*
+ * In a control cycle before the first of them: takes the first ceiling, if it is there, so that the
+ * first need not.
+ */
 void takt_motion_prepare(struct motion *m);
 
 /* One control cycle. Fills everything of the record but set, act and spindle_rev. */
@@ -125,8 +142,8 @@ enum motion_result takt_motion_cycle(struct motion *m, const struct motion_opera
                                      struct cycle_record *record);
 
 /*
- * The move that is executed ends where the axes come to rest from now on; all other blocks of the path are dropped. The
- * path goes on from there.
+ * The move that is executed ends where the axes come to rest from now on; all other blocks of the
+ * path are dropped. The path goes on from there.
  */
 void takt_motion_end_here(struct motion *m);
 

@@ -65,9 +65,10 @@ static void count_changes(struct reference *l, double change)
 }
 
 /*
- * A way in whole units. What rounding leaves counts in the next cycle: else a slow feed would be another, one below half a unit
- * never get anywhere, and a thousand cycles of braking be a hundred units too late, since each takes what rounding has given, and
- * none can brake harder for what it has taken.
+ * A way in whole units. What rounding leaves counts in the next cycle: else a slow feed would be
+ * another, one below half a unit never get anywhere, and a thousand cycles of braking be a hundred
+ * units too late, since each takes what rounding has given, and none can brake harder for what it
+ * has taken.
  */
 static uint64_t whole_way(struct reference *l, double way_mm)
 {
@@ -87,8 +88,9 @@ static void go(struct reference *l, double feed)
 }
 
 /*
- * Comes to rest in this cycle at a position that is no farther ahead than a cycle's way may be. If it is there already, the last
- * way was longer by what was left of the feed, and speeding up in the very next cycle would add to that.
+ * Comes to rest in this cycle at a position that is no farther ahead than a cycle's way may be. If
+ * it is there already, the last way was longer by what was left of the feed, and speeding up in the
+ * very next cycle would add to that.
  */
 static void come_to_rest(struct reference *l, uint64_t position)
 {
@@ -188,8 +190,9 @@ static void enter_span(struct reference *l, uint32_t k, uint64_t from,
 }
 
 /*
- * Leaves the stop for the span after it: with the first piece of it, since a short one may lie behind the trapezoidal reference
- * already and bind the setpoint nevertheless. False: that is not known yet.
+ * Leaves the stop for the span after it: with the first piece of it, since a short one may lie
+ * behind the trapezoidal reference already and bind the setpoint nevertheless. False: that is not
+ * known yet.
  */
 static bool leave_stop(struct reference *l, struct reference_start *start)
 {
@@ -204,7 +207,10 @@ static bool leave_stop(struct reference *l, struct reference_start *start)
     return false;
 }
 
-/* Is the trapezoidal reference, or the setpoint that follows it, at the junction: landed in motion, or at rest for a whole window? */
+/*
+ * Is the trapezoidal reference, or the setpoint that follows it, at the junction: landed in motion,
+ * or at rest for a whole window?
+ */
 static bool is_at_junction(const struct reference *l, uint64_t junction)
 {
     return l->run.over ? l->run.junction == junction

@@ -1,9 +1,11 @@
 /*
- * The trapezoidal reference: moves along the path with constant acceleration, no acceleration, or constant deceleration, under a
- * ceiling (plan/ceiling.h). The setpoint is its moving average and follows behind it.
+ * The trapezoidal reference: moves along the path with constant acceleration, no acceleration, or
+ * constant deceleration, under a ceiling (plan/ceiling.h). The setpoint is its moving average and
+ * follows behind it.
  *
- * Between accelerations of opposite sign it keeps its feed for a whole averaging window; then the average's jerk is
- * never more than acceleration / first box, on every setpoint, whatever the operator does.
+ * Between accelerations of opposite sign it keeps its feed for a whole averaging window; then the
+ * average's jerk is never more than acceleration / first box, on every setpoint, whatever the
+ * operator does.
  *
  * Feeds are mm/cycle, accelerations mm/cycle2, positions path units.
  */
@@ -18,7 +20,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Ceilings that bind until the setpoint has left what they are made of: at most this many are told apart. */
+/*
+ * Ceilings that bind until the setpoint has left what they are made of: at most this many are told
+ * apart.
+ */
 #define REFERENCE_LOW_MAX 32
 
 /* Pieces that the trapezoidal reference comes to, or that are looked at, in one cycle at most. */
@@ -37,7 +42,10 @@ struct reference_place {
     bool late;           /* too fast for something that begins here and was not known before: */
     uint64_t late_start; /* it starts here for the setpoint, */
     double late_a;       /* and this acceleration still counts, as was promised */
-    /* from the setpoint's piece to the trapezoidal reference's, feeds rising: the first is the lowest */
+    /*
+     * from the setpoint's piece to the trapezoidal reference's, feeds rising: the first is the
+     * lowest
+     */
     uint32_t low_first, low_count;
     struct reference_low low[REFERENCE_LOW_MAX];
     double low_feed;    /* of the first */
@@ -85,9 +93,9 @@ struct reference {
 void takt_reference_init(struct reference *l, enum ramp_profile profile, uint64_t at);
 
 /*
- * A new ceiling, over a path that reaches further or under other overrides. It is taken when the trapezoidal reference's place in it
- * has been found, some cycles later; until then the ceiling in use and the new one stay as they are. Not taken is one that
- * ends too early, for want of pieces.
+ * A new ceiling, over a path that reaches further or under other overrides. It is taken when the
+ * trapezoidal reference's place in it has been found, some cycles later; until then the ceiling in
+ * use and the new one stay as they are. Not taken is one that ends too early, for want of pieces.
  */
 void takt_reference_set_ceiling(struct reference *l, const struct ceiling *ceiling);
 
@@ -111,27 +119,31 @@ bool takt_reference_has_halted(const struct reference *l);
 void takt_reference_leave_halt(struct reference *l);
 
 /*
- * Could it be at a position, a little ahead, with this feed, mm/cycle, and meet what is ahead? highest: at the highest
- * overrides, else as they are.
+ * Could it be at a position, a little ahead, with this feed, mm/cycle, and meet what is ahead?
+ * highest: at the highest overrides, else as they are.
  */
 bool takt_reference_could_be(const struct reference *l, uint64_t at, double feed, bool highest);
 /* Could it come to rest from there before another position, whatever the ceiling asks for? */
 bool takt_reference_could_rest(const struct reference *l, uint64_t at, double feed, uint64_t end);
 /*
- * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
- * cycle, in which it keeps it: third differences reach over that many more.
+ * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a
+ * whole window but for one cycle, in which it keeps it: third differences reach over that many
+ * more.
  */
 void takt_reference_follow(struct reference *l, uint64_t at, double feed, uint64_t setpoint);
 
-/* A span that begins: the averages start anew from where the trapezoidal reference is, as if it had always moved by step. */
+/*
+ * A span that begins: the averages start anew from where the trapezoidal reference is, as if it had
+ * always moved by step.
+ */
 struct reference_start {
     uint64_t at;
     uint64_t step; /* path units a cycle */
 };
 
 /*
- * One cycle. setpoint: where the setpoint was at the end of the last one. hold: come to rest and stay.
- * True when it begins a span, with l->cycles; start is then filled.
+ * One cycle. setpoint: where the setpoint was at the end of the last one. hold: come to rest and
+ * stay. True when it begins a span, with l->cycles; start is then filled.
  */
 bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
                          struct reference_start *start);

@@ -1,14 +1,15 @@
 /*
  * Goal: in each cycle the highest feed from which everything ahead can still be met.
  *
- * With w the feed, s the position, a the acceleration of the piece, N the averaging window in cycles:
+ * With w the feed, s the position, a the acceleration of the piece, N the averaging window in
+ * cycles:
  *
  *     speeding up to w'    it must then be possible to keep w' for N cycles and brake:   w'^2 <= B(s' + N w')
  *     keeping w            the next cycle must be able to brake:                         w^2  <= B(s + w)
  *     braking to w'        by a at most, otherwise as above without N
  *
- * B(x) = u + 2 a (x_end - x) is feed squared from which the piece's end can be met (ceiling.h). A ceiling that the
- * setpoint has not left yet, and every one up to s' + N w', binds w' as well.
+ * B(x) = u + 2 a (x_end - x) is feed squared from which the piece's end can be met (ceiling.h). A
+ * ceiling that the setpoint has not left yet, and every one up to s' + N w', binds w' as well.
  */
 #include "base/assert.h"
 #include "motion/reference_private.h"
@@ -22,7 +23,10 @@
 /* Cycles beside two windows within which a landing is looked into. */
 #define LANDING_CYCLES 64.0
 
-/* Cycles that a feed can be kept before braking to the end of what is known: more comes in that time. */
+/*
+ * Cycles that a feed can be kept before braking to the end of what is known: more comes in that
+ * time.
+ */
 #define OPEN_CYCLES 16.0
 
 /* Halvings in search of a feed to land from. */
@@ -33,7 +37,9 @@
 
 /* -- braking -- */
 
-/* Feed at the end of a piece: 0 at a junction where the axes only come to rest, whatever follows. */
+/*
+ * Feed at the end of a piece: 0 at a junction where the axes only come to rest, whatever follows.
+ */
 static double end_feed(const struct reference *l, const struct ceiling_piece *p)
 {
     return p->feed_mm_s == 0.0F ? 0.0 : reference_feed(l, p->end_feed_mm_s);
@@ -56,14 +62,20 @@ static double feed_to_meet(const struct place *p, double w)
     return p->gap_mm < 0.5 * (w + v) || v < 0.0 ? p->feed : v;
 }
 
-/* So far away, (w + a)^2 <= 2 a gap, that feed_to_meet is above w and nothing has to be done for it in this cycle. */
+/*
+ * So far away, (w + a)^2 <= 2 a gap, that feed_to_meet is above w and nothing has to be done for it
+ * in this cycle.
+ */
 static bool is_far(const struct place *p, double w)
 {
     return reference_square(w + p->a) * (1.0 + REFERENCE_FEED_SQUARED_SLACK) <=
            2.0 * p->a * p->gap_mm;
 }
 
-/* The longest way of a cycle that the ceilings allow in all of the pieces that have been braked for. */
+/*
+ * The longest way of a cycle that the ceilings allow in all of the pieces that have been braked
+ * for.
+ */
 static double cycle_way(const struct reference *l, const struct reference_brake *b)
 {
     double way_mm = b->low;
@@ -79,8 +91,9 @@ static double cycle_way(const struct reference *l, const struct reference_brake 
 }
 
 /*
- * Brakes for it. True: it is to stop there in this cycle, a little early perhaps, so that no feed is left that is
- * lost in the rounding of positions; but not by a longer way than a cycle may have, where the axes could do much more.
+ * Brakes for it. True: it is to stop there in this cycle, a little early perhaps, so that no feed
+ * is left that is lost in the rounding of positions; but not by a longer way than a cycle may have,
+ * where the axes could do much more.
  */
 static bool brake_for(const struct reference *l, const struct place *p, struct reference_brake *b)
 {
@@ -143,8 +156,8 @@ static void brake_for_piece(const struct reference *l, uint32_t k, double gap_mm
 }
 
 /*
- * Too fast for what begins here: slows down until that does no harm, v e <= S - s - (w + v)/2, and what follows can be met
- * (reference_place.c), and comes to rest at S at the latest.
+ * Too fast for what begins here: slows down until that does no harm, v e <= S - s - (w + v)/2, and
+ * what follows can be met (reference_place.c), and comes to rest at S at the latest.
  */
 static void brake_late(const struct reference *l, struct reference_brake *b)
 {
@@ -164,9 +177,9 @@ static bool is_open(const struct reference *l)
 }
 
 /*
- * The highest feed v up to top that can be kept for K cycles and then be braked from to the end of what is known:
- * v K + v^2 / 2a <= x_end - x, x = s + (w + v)/2. So it is neared ever slower, and not stopped at as long as more
- * comes in time.
+ * The highest feed v up to top that can be kept for K cycles and then be braked from to the end of
+ * what is known: v K + v^2 / 2a <= x_end - x, x = s + (w + v)/2. So it is neared ever slower, and
+ * not stopped at as long as more comes in time.
  */
 static double feed_to_wait(const struct reference *l, double top)
 {
@@ -228,7 +241,10 @@ static double landing_gap(const struct reference *l)
     return path_mm(l->at, l->junction);
 }
 
-/* How hard the trapezoidal reference may slow down on its way to the junction: above its feed as in the piece that it is in. */
+/*
+ * How hard the trapezoidal reference may slow down on its way to the junction: above its feed as in
+ * the piece that it is in.
+ */
 static double landing_acceleration(const struct reference *l, double feed)
 {
     const double here = reference_acceleration(l);
@@ -252,15 +268,18 @@ static bool landing_from(const struct reference *l, double gap_mm, double feed, 
     return takt_landing_solve(&landing, run);
 }
 
-/* A junction that cannot be landed on in motion any more, because of a hold close to it, is a stop: how hard to brake. */
+/*
+ * A junction that cannot be landed on in motion any more, because of a hold close to it, is a stop:
+ * how hard to brake.
+ */
 static double stop_acceleration(const struct reference *l)
 {
     return landing_acceleration(l, 0.0);
 }
 
 /*
- * After speeding up to v: can the next landed junction be met in motion when v has been kept for a window? A feed above
- * the junction's comes down to it in time by the ceiling.
+ * After speeding up to v: can the next landed junction be met in motion when v has been kept for a
+ * window? A feed above the junction's comes down to it in time by the ceiling.
  */
 static bool can_land_later(const struct reference *l, double v)
 {
@@ -270,7 +289,9 @@ static bool can_land_later(const struct reference *l, double v)
     return v > l->landing_feed || landing_from(l, gap_mm, v, l->landing_feed, &run);
 }
 
-/* The highest feed up to v from which the next landed junction can be met: in motion, else at rest. */
+/*
+ * The highest feed up to v from which the next landed junction can be met: in motion, else at rest.
+ */
 static double feed_to_land(const struct reference *l, double v)
 {
     double low = l->feed;
@@ -307,7 +328,10 @@ static double landing_reach(const struct reference *l)
     return l->feed * (0.5 * l->feed / a + 2.0 * l->window + LANDING_CYCLES);
 }
 
-/* Does anything before the junction ask for less than the present feed? highest: at the highest overrides. */
+/*
+ * Does anything before the junction ask for less than the present feed? highest: at the highest
+ * overrides.
+ */
 static bool is_way_free(const struct reference *l, bool highest)
 {
     const struct ceiling_piece *p = reference_piece(l, l->here.piece);
@@ -347,8 +371,8 @@ static bool can_rest_before(const struct reference *l, double gap_mm)
 }
 
 /*
- * Can it be landed in this cycle, and not a cycle later? Where the feed was lowered too late for the junction's, up to the
- * highest that the axes can do there.
+ * Can it be landed in this cycle, and not a cycle later? Where the feed was lowered too late for
+ * the junction's, up to the highest that the axes can do there.
  */
 static bool must_land(const struct reference *l, const struct reference_brake *b, double gap_mm,
                       struct landing_run *run)
@@ -370,8 +394,9 @@ static bool must_stop(const struct reference *l)
 }
 
 /*
- * Begins to land when it could not be done any more a cycle later, and no ceiling lies between. Where it cannot be done
- * at all, or a hold can still be obeyed before the junction, the junction becomes a stop.
+ * Begins to land when it could not be done any more a cycle later, and no ceiling lies between.
+ * Where it cannot be done at all, or a hold can still be obeyed before the junction, the junction
+ * becomes a stop.
  */
 void takt_reference_consider_landing(struct reference *l, bool hold, struct reference_brake *b)
 {
@@ -394,7 +419,10 @@ void takt_reference_consider_landing(struct reference *l, bool hold, struct refe
 
 /* -- speeding up -- */
 
-/* The highest feed v up to top that can be kept for a window and braked from to where it halts: as in a piece. */
+/*
+ * The highest feed v up to top that can be kept for a window and braked from to where it halts: as
+ * in a piece.
+ */
 static double feed_to_halt(const struct reference *l, double top)
 {
     const double a = takt_reference_halt_acceleration(l);
@@ -405,7 +433,10 @@ static double feed_to_halt(const struct reference *l, double top)
     return root > 0.0 ? maths_min(top, maths_sqrt(root) - m) : 0.0;
 }
 
-/* Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what a piece's end asks for. */
+/*
+ * Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what a piece's end asks
+ * for.
+ */
 static double feed_in_piece(const struct reference *l, const struct ceiling_piece *p, double gap_mm)
 {
     const double a = (double)p->acceleration;
@@ -417,8 +448,9 @@ static double feed_in_piece(const struct reference *l, const struct ceiling_piec
 }
 
 /*
- * The highest feed up to top that can be kept for a window with everything met that is ahead then. Going on from piece
- * to piece: at its end the feed for x = end is allowed, or the answer lies in it.
+ * The highest feed up to top that can be kept for a window with everything met that is ahead then.
+ * Going on from piece to piece: at its end the feed for x = end is allowed, or the answer lies in
+ * it.
  */
 static double feed_to_keep(const struct reference *l, double s, double top, double low)
 {

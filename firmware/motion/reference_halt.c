@@ -1,30 +1,33 @@
 /*
- * Goal: every motion in which it can still come to rest ends at rest, exactly at its end, whenever that is asked for
- * and taken back (single block).
+ * Goal: every motion in which it can still come to rest ends at rest, exactly at its end, whenever
+ * that is asked for and taken back (single block).
  *
- * The ceilings know nothing of it: in them the motion is passed. The trapezoidal reference alone halts, as in a hold, but at the next
- * end E of a motion in its span, if it can come to rest there:
+ * The ceilings know nothing of it: in them the motion is passed. The trapezoidal reference alone
+ * halts, as in a hold, but at the next end E of a motion in its span, if it can come to rest there:
  *
  *     w^2 <= 2 a (E - s - w k)
  *
- * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of the motion's blocks and
- * of the junction that ends the span. It speeds up only so far that this holds when it may brake again, and takes on the
- * acceleration of what is behind E only if it holds with that; until then it keeps the one it had (reference_place.c).
- * Wherever a hold keeps the limits so does a halt: no window, junction or promise of a ceiling depends on the operator's
+ * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of
+ * the motion's blocks and of the junction that ends the span. It speeds up only so far that this
+ * holds when it may brake again, and takes on the acceleration of what is behind E only if it holds
+ * with that; until then it keeps the one it had (reference_place.c). Wherever a hold keeps the
+ * limits so does a halt: no window, junction or promise of a ceiling depends on the operator's
  * switch.
  *
- * Too fast for the next end it slows down as in a hold, and so on until there is one that it can rest at. If that end is a
- * junction which has to be landed on in motion, the next one is in the span behind. The ceiling's own stops need nothing.
+ * Too fast for the next end it slows down as in a hold, and so on until there is one that it can
+ * rest at. If that end is a junction which has to be landed on in motion, the next one is in the
+ * span behind. The ceiling's own stops need nothing.
  *
  *     feed |  ___                          ends of motions |, the trapezoidal reference at s: the first two are too near, it halts
  *          |     \_                        at E
  *          |       |\_|_____
  *          +-----s-+--+-----\E------------> position
  *
- * Rejected: stops in the ceilings, from a block on that is far enough when one is asked for. Another window of the span
- * before, a junction landed on in between, where the trapezoidal reference is set half a window ahead, or less acceleration behind it
- * brought the trapezoidal reference to such a stop too fast: 25 times the acceleration, and back on the path. Windows that a stop had
- * made were promised to spans that were none when it was taken back.
+ * Rejected: stops in the ceilings, from a block on that is far enough when one is asked for.
+ * Another window of the span before, a junction landed on in between, where the trapezoidal
+ * reference is set half a window ahead, or less acceleration behind it brought the trapezoidal
+ * reference to such a stop too fast: 25 times the acceleration, and back on the path. Windows that
+ * a stop had made were promised to spans that were none when it was taken back.
  */
 #include "base/assert.h"
 #include "motion/reference_private.h"
@@ -33,7 +36,10 @@
 #include "plan/path.h"
 #include "plan/span.h"
 
-/* Blocks that are gone on by in a cycle, at most: twice what the trapezoidal reference can pass in it (plan/block.c). */
+/*
+ * Blocks that are gone on by in a cycle, at most: twice what the trapezoidal reference can pass in
+ * it (plan/block.c).
+ */
 #define BLOCKS_MAX 16
 
 bool takt_reference_has_halted(const struct reference *l)
@@ -66,7 +72,10 @@ bool takt_reference_can_halt(const struct reference *l, double a)
     return spare_feed_squared(l, a) >= REFERENCE_FEED_SQUARED_SLACK * reference_square(l->feed);
 }
 
-/* Rounding, and a last cycle of braking that is a little harder, take back no end that has been found. */
+/*
+ * Rounding, and a last cycle of braking that is a little harder, take back no end that has been
+ * found.
+ */
 static bool keeps_halt(const struct reference *l, double a)
 {
     return spare_feed_squared(l, a) >= -REFERENCE_FEED_SQUARED_SLACK * reference_square(l->feed) -
@@ -79,7 +88,10 @@ static double free_acceleration(const struct reference *l)
     return reference_has_piece(l) ? maths_min(l->halt.a, reference_acceleration(l)) : l->halt.a;
 }
 
-/* Not harder than the junction behind allows: it can be rested at too when the halt is taken back (can_rest_before). */
+/*
+ * Not harder than the junction behind allows: it can be rested at too when the halt is taken back
+ * (can_rest_before).
+ */
 static double junction_acceleration(const struct reference *l)
 {
     const uint32_t landing = reference_landing(l);
@@ -91,8 +103,8 @@ static double junction_acceleration(const struct reference *l)
 }
 
 /*
- * A junction that came into view since the end was found may allow less than what it takes to rest there, w^2 / 2 (E - s - w k).
- * The end is kept, and not taken back.
+ * A junction that came into view since the end was found may allow less than what it takes to rest
+ * there, w^2 / 2 (E - s - w k). The end is kept, and not taken back.
  */
 static bool is_bound(const struct reference *l)
 {

@@ -1,18 +1,20 @@
 /*
  * Goal: a new ceiling never asks for what cannot be done any more.
  *
- * Where the trapezoidal reference may brake how hard is the same under every override (plan/ceiling.h). So whatever the override, it can
- * do what it could do under the one before: brake as hard as its place allows, and be no faster anywhere than then. It is in
- * the piece that lies where it is, however fast it is.
+ * Where the trapezoidal reference may brake how hard is the same under every override
+ * (plan/ceiling.h). So whatever the override, it can do what it could do under the one before:
+ * brake as hard as its place allows, and be no faster anywhere than then. It is in the piece that
+ * lies where it is, however fast it is.
  *
- * But a new ceiling may also show something slow, or with a low acceleration, where only the end of what was known had been.
- * The trapezoidal reference that is too fast for that is late: it keeps the acceleration it had, and brakes, until it does no harm. With
- * the block from S on that is when what it begins there can be met, and
+ * But a new ceiling may also show something slow, or with a low acceleration, where only the end of
+ * what was known had been. The trapezoidal reference that is too fast for that is late: it keeps
+ * the acceleration it had, and brakes, until it does no harm. With the block from S on that is when
+ * what it begins there can be met, and
  *
  *     w b <= S - s
  *
- * b half the window and a margin: for then all that the averages hold when the setpoint comes to S is that block's. At worst
- * it comes to rest at S, which is what it was promised.
+ * b half the window and a margin: for then all that the averages hold when the setpoint comes to S
+ * is that block's. At worst it comes to rest at S, which is what it was promised.
  */
 #include "base/assert.h"
 #include "motion/reference_private.h"
@@ -42,7 +44,10 @@ static void find_lowest(struct reference_place *p)
     p->low_leave = path_ceiling_leave(p->ceiling, low_at(p, 0)->leave);
 }
 
-/* Where there is no room for one more the last two become one: the lower feed until the later place. */
+/*
+ * Where there is no room for one more the last two become one: the lower feed until the later
+ * place.
+ */
 static void low_push(struct reference_place *p, uint32_t k)
 {
     const float feed_mm_s = p->ceiling->piece[k].feed_mm_s;
@@ -77,7 +82,10 @@ double takt_reference_low_feed(struct reference *l, uint64_t setpoint)
 
 /* -- from piece to piece -- */
 
-/* Is the trapezoidal reference past the end of piece k? A span's end is exact, the others are where a ceiling begins. */
+/*
+ * Is the trapezoidal reference past the end of piece k? A span's end is exact, the others are where
+ * a ceiling begins.
+ */
 static bool has_passed(const struct reference *l, const struct ceiling *c, uint32_t k)
 {
     return reference_is_last_of_span(&c->piece[k])
@@ -86,8 +94,9 @@ static bool has_passed(const struct reference *l, const struct ceiling *c, uint3
 }
 
 /*
- * Where the trapezoidal reference may brake at the earliest: its feed has then been kept for a window. mm from the origin; in whole units,
- * or what is asked for there would depend, in the last bit, on what it is counted from.
+ * Where the trapezoidal reference may brake at the earliest: its feed has then been kept for a
+ * window. mm from the origin; in whole units, or what is asked for there would depend, in the last
+ * bit, on what it is counted from.
  */
 static double brake_position(const struct reference *l, const struct ceiling *c)
 {
@@ -103,8 +112,8 @@ static double feed_squared_of(const struct ceiling *c, float feed_mm_s)
 }
 
 /*
- * Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from piece k on? highest: at
- * the highest overrides.
+ * Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from
+ * piece k on? highest: at the highest overrides.
  */
 static bool can_meet(const struct ceiling *c, uint32_t k, double x, double feed_squared,
                      bool highest)
@@ -125,10 +134,14 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double feed_
             return false;
         }
     }
-    return true; /* this many pieces within a window: what ends the last one counts for those behind */
+    /* this many pieces within a window: what ends the last one counts for those behind */
+    return true;
 }
 
-/* Can the trapezoidal reference in piece k do what the ceiling asks for from here on, but for rounding? */
+/*
+ * Can the trapezoidal reference in piece k do what the ceiling asks for from here on, but for
+ * rounding?
+ */
 static bool can_follow(const struct reference *l, const struct ceiling *c, uint32_t k, bool highest)
 {
     return can_meet(c, k, brake_position(l, c),
@@ -146,7 +159,10 @@ static bool is_no_lower(const struct reference *l, const struct ceiling *c, uint
     return (had->feed_mm_s <= p->feed_mm_s || kept) && p->acceleration >= had->acceleration;
 }
 
-/* Does it halt before a place, and could not with the acceleration of piece k, which starts there for the setpoint? */
+/*
+ * Does it halt before a place, and could not with the acceleration of piece k, which starts there
+ * for the setpoint?
+ */
 static bool halts_before(const struct reference *l, const struct ceiling *c, uint32_t k,
                          uint64_t start)
 {
@@ -154,7 +170,10 @@ static bool halts_before(const struct reference *l, const struct ceiling *c, uin
            !takt_reference_can_halt(l, (double)c->piece[k].acceleration);
 }
 
-/* May the trapezoidal reference come to what begins with piece k and starts at a place for the setpoint? */
+/*
+ * May the trapezoidal reference come to what begins with piece k and starts at a place for the
+ * setpoint?
+ */
 static bool may_enter(const struct reference *l, const struct ceiling *c, uint32_t k,
                       uint64_t start)
 {
@@ -192,7 +211,10 @@ static void come_to(struct reference *l, struct reference_place *p, uint32_t k)
     l->known = nearer(l, l->known, start);
 }
 
-/* Comes to the piece behind that which the trapezoidal reference is in, if it is there. False: it stays. */
+/*
+ * Comes to the piece behind that which the trapezoidal reference is in, if it is there. False: it
+ * stays.
+ */
 static bool go_on(struct reference *l, struct reference_place *p)
 {
     const struct ceiling *c = p->ceiling;
@@ -222,7 +244,10 @@ static bool is_harmless(const struct reference *l)
             !halts_before(l, p->ceiling, p->piece, p->late_start));
 }
 
-/* Once it can do all that the ceiling asks for it can do so under any override, as far as is known now. */
+/*
+ * Once it can do all that the ceiling asks for it can do so under any override, as far as is known
+ * now.
+ */
 static void note_following(struct reference *l)
 {
     const uint64_t end = reference_leave_of(l, l->here.ceiling->count - 1);
@@ -317,7 +342,10 @@ bool takt_reference_could_rest(const struct reference *l, uint64_t at, double fe
     return false;
 }
 
-/* What binds from the setpoint on to piece k, in its span: that of further pieces, where it has been, does not. */
+/*
+ * What binds from the setpoint on to piece k, in its span: that of further pieces, where it has
+ * been, does not.
+ */
 static void low_anew(struct reference_place *p, uint32_t k, uint64_t setpoint)
 {
     uint32_t first = k;
@@ -409,8 +437,9 @@ static bool search(struct reference *l)
 }
 
 /*
- * Does the ceiling ask for what cannot be done, whatever the override? It had too few pieces to reach as far as the one
- * before; or less acceleration came into view. Then that one goes on, until the trapezoidal reference is slow enough.
+ * Does the ceiling ask for what cannot be done, whatever the override? It had too few pieces to
+ * reach as far as the one before; or less acceleration came into view. Then that one goes on, until
+ * the trapezoidal reference is slow enough.
  */
 static bool is_refused(const struct reference *l)
 {
@@ -421,8 +450,9 @@ static bool is_refused(const struct reference *l)
 }
 
 /*
- * From now on the trapezoidal reference is in the ceiling that came. Of the list what is used. If it is late it keeps the acceleration
- * that the ceiling before had here: by that it can come to rest in time. The new one's may be less even before what it is late for.
+ * From now on the trapezoidal reference is in the ceiling that came. Of the list what is used. If
+ * it is late it keeps the acceleration that the ceiling before had here: by that it can come to
+ * rest in time. The new one's may be less even before what it is late for.
  */
 static void take_place(struct reference *l)
 {

@@ -1,6 +1,6 @@
 /*
- * What the parts of the trapezoidal reference share: reference.c moves it, reference_feed.c finds the feed, reference_halt.c where to halt, reference_place.c
- * its place in a ceiling.
+ * What the parts of the trapezoidal reference share: reference.c moves it, reference_feed.c finds
+ * the feed, reference_halt.c where to halt, reference_place.c its place in a ceiling.
  */
 #ifndef TAKT_MOTION_REFERENCE_PRIVATE_H
 #define TAKT_MOTION_REFERENCE_PRIVATE_H
@@ -20,7 +20,10 @@
 /* The last deceleration to rest may be more than the allowed one by this part. */
 #define REFERENCE_REST_PART 2e-4
 
-/* What braking is for: a feed, how hard it may be reached, and if it is 0, where to come to rest in this cycle. */
+/*
+ * What braking is for: a feed, how hard it may be reached, and if it is 0, where to come to rest in
+ * this cycle.
+ */
 struct reference_brake {
     double at_mm; /* the trapezoidal reference, from the ceiling's origin */
     double feed;
@@ -36,7 +39,10 @@ static inline const struct ceiling_piece *reference_piece(const struct reference
     return &l->here.ceiling->piece[k];
 }
 
-/* A change from one feed to a higher one, or back, by less than this is rounding: a part of the acceleration, or of it. */
+/*
+ * A change from one feed to a higher one, or back, by less than this is rounding: a part of the
+ * acceleration, or of it.
+ */
 static inline double reference_change_min(double a, double higher)
 {
     const double part = 1e-9 * a;
@@ -84,7 +90,10 @@ static inline bool reference_is_last_of_span(const struct ceiling_piece *p)
     return p->stop || p->landed;
 }
 
-/* The junction that this span ends with, if it is one to land on; CEILING_NONE: a stop, or it is not known. */
+/*
+ * The junction that this span ends with, if it is one to land on; CEILING_NONE: a stop, or it is
+ * not known.
+ */
 static inline uint32_t reference_landing(const struct reference *l)
 {
     return reference_has_piece(l) ? reference_piece(l, l->here.piece)->landing : CEILING_NONE;
@@ -102,7 +111,10 @@ static inline double reference_acceleration(const struct reference *l)
     return l->here.late ? l->here.late_a : (double)reference_piece(l, l->here.piece)->acceleration;
 }
 
-/* Half the window and the margin but for one cycle: that in which the trapezoidal reference comes to a piece. */
+/*
+ * Half the window and the margin but for one cycle: that in which the trapezoidal reference comes
+ * to a piece.
+ */
 static inline double reference_entry_cycles(const struct reference *l)
 {
     return 0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES - 1.0;
@@ -112,12 +124,21 @@ static inline double reference_entry_cycles(const struct reference *l)
 void takt_reference_follow_pieces(struct reference *l);
 /* reference_place.c: begins at a piece, of a new span. */
 void takt_reference_enter_piece(struct reference *l, uint32_t k);
-/* reference_place.c: forgets ceilings that the setpoint has left, and tells the lowest of the others. */
+/*
+ * reference_place.c: forgets ceilings that the setpoint has left, and tells the lowest of the
+ * others.
+ */
 double takt_reference_low_feed(struct reference *l, uint64_t setpoint);
 
-/* reference_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for, or the ceiling low. */
+/*
+ * reference_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for, or
+ * the ceiling low.
+ */
 void takt_reference_brake_ahead(const struct reference *l, double low, struct reference_brake *b);
-/* reference_feed.c: begins to land (run.active) when it is time to, or makes the junction a stop where it cannot be done. */
+/*
+ * reference_feed.c: begins to land (run.active) when it is time to, or makes the junction a stop
+ * where it cannot be done.
+ */
 void takt_reference_consider_landing(struct reference *l, bool hold, struct reference_brake *b);
 static inline void reference_approach_landing(struct reference *l, bool hold,
                                               struct reference_brake *b)
@@ -126,14 +147,23 @@ static inline void reference_approach_landing(struct reference *l, bool hold,
         takt_reference_consider_landing(l, hold, b);
     }
 }
-/* reference_halt.c: with halt.on: looks for the end to halt at (halt.found). True: it is too fast for the next one. */
+/*
+ * reference_halt.c: with halt.on: looks for the end to halt at (halt.found). True: it is too fast
+ * for the next one.
+ */
 bool takt_reference_seek_halt(struct reference *l);
-/* reference_halt.c: how hard it brakes for it, mm/cycle2; and could it come to rest there if it braked by a? */
+/*
+ * reference_halt.c: how hard it brakes for it, mm/cycle2; and could it come to rest there if it
+ * braked by a?
+ */
 double takt_reference_halt_acceleration(const struct reference *l);
 bool takt_reference_can_halt(const struct reference *l, double a);
 /* reference_feed.c: brakes for the end that it halts at. */
 void takt_reference_brake_to_halt(const struct reference *l, struct reference_brake *b);
-/* reference_feed.c: the feed to speed up to in this cycle under the ceiling low; the present one: it may not. */
+/*
+ * reference_feed.c: the feed to speed up to in this cycle under the ceiling low; the present one:
+ * it may not.
+ */
 double takt_reference_speed_up(const struct reference *l, double at_mm, double low);
 
 #endif

@@ -21,7 +21,10 @@ void takt_panel_client_leave(struct panel_client *client)
     struct panel *panel = client->panel;
 
     TAKT_ASSERT(client->panel != NULL);
-    /* Nobody else becomes the owner by it: the register WATCHDOG stays until the watchdog has bitten. */
+    /*
+     * Nobody else becomes the owner by it: the register WATCHDOG stays until the watchdog has
+     * bitten.
+     */
     if (panel->owner == client)
         panel->owner = NULL;
 }

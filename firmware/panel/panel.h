@@ -4,7 +4,8 @@
  *     request -> rows of the table -> who may, value, state -> mailbox, or an order to the controller
  *     snapshot of the controller   -> reply
  *
- * No input or output: what it asks for goes through a panel_port and a panel_store. One thread calls it.
+ * No input or output: what it asks for goes through a panel_port and a panel_store. One thread
+ * calls it.
  */
 #ifndef TAKT_PANEL_PANEL_H
 #define TAKT_PANEL_PANEL_H

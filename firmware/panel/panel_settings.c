@@ -36,7 +36,10 @@ enum panel_refusal takt_panel_begin_settings(struct panel *panel,
     return PANEL_REFUSAL_NONE;
 }
 
-/* They are looked at as a whole before they replace those that are there; no order is needed: they count later. */
+/*
+ * They are looked at as a whole before they replace those that are there; no order is needed: they
+ * count later.
+ */
 enum panel_refusal takt_panel_commit_settings(struct panel *panel)
 {
     const struct panel_store *store = &panel->config.settings;

@@ -141,8 +141,8 @@ static bool is_for_everybody(const struct panel_request *r)
 }
 
 /*
- * After n wrong passwords in a row, whoever gave them, none is looked at for 500 2^n control cycles: of 1 ms, from 1 s to
- * 16 s. Guesses over all connections are then some thousand a day.
+ * After n wrong passwords in a row, whoever gave them, none is looked at for 500 2^n control
+ * cycles: of 1 ms, from 1 s to 16 s. Guesses over all connections are then some thousand a day.
  */
 #define WRONG_CYCLES 500U
 #define WRONG_MOST   5U
@@ -296,8 +296,8 @@ static enum panel_refusal begin_stream(struct panel_request *r)
 }
 
 /*
- * Made durable first, then handed to the controller, which alone knows whether it may be taken now, then put in its
- * place. Whatever fails, there is one whole program.
+ * Made durable first, then handed to the controller, which alone knows whether it may be taken now,
+ * then put in its place. Whatever fails, there is one whole program.
  */
 static enum panel_refusal commit(struct panel_request *r)
 {
@@ -372,7 +372,10 @@ static enum panel_refusal take_chunk(const struct panel_request *r)
                                             : PANEL_REFUSAL_VALUE;
 }
 
-/* The table keeps chunk, upload command and orders so far apart that a request has one of them at most. */
+/*
+ * The table keeps chunk, upload command and orders so far apart that a request has one of them at
+ * most.
+ */
 static enum panel_refusal carry_out(struct panel_request *r)
 {
     enum panel_refusal refusal = PANEL_REFUSAL_NONE;

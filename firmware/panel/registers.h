@@ -1,9 +1,10 @@
 /*
- * The operator's panel as a table: every register once, with number, name, unit, scale, access and the states in which it
- * may be written. The server, its documentation (registers.md, registers.csv) and `takt panel` all read it.
+ * The operator's panel as a table: every register once, with number, name, unit, scale, access and
+ * the states in which it may be written. The server, its documentation (registers.md,
+ * registers.csv) and `takt panel` all read it.
  *
- * To add a register: a row in PANEL_REGISTERS, in the order of table and address, and if it is set a line in
- * service/service_state.h; then `takt panel table` writes the documentation again.
+ * To add a register: a row in PANEL_REGISTERS, in the order of table and address, and if it is set
+ * a line in service/service_state.h; then `takt panel table` writes the documentation again.
  */
 #ifndef TAKT_PANEL_REGISTERS_H
 #define TAKT_PANEL_REGISTERS_H
@@ -111,7 +112,8 @@ enum panel_form {
     PANEL_U16,
     PANEL_U32, /* 32 bits: the high word first, written whole */
     PANEL_S32,
-    PANEL_TEXT, /* two characters a word, the first in its high byte; ends with a zero or the last */
+    /* two characters a word, the first in its high byte; ends with a zero or the last */
+    PANEL_TEXT,
     PANEL_BYTES /* two bytes a word */
 };
 
@@ -134,8 +136,8 @@ enum panel_form {
 /*
  * ROW(id, table, address, form, words, unit, decimals, least, most, states, meaning)
  *
- * One count is 10^-decimals units. states: in which it may be written; PANEL_NEVER: read only. AXIS rows stand for six,
- * of X Y Z A B C in this order; of rotary axes read deg for mm.
+ * One count is 10^-decimals units. states: in which it may be written; PANEL_NEVER: read only. AXIS
+ * rows stand for six, of X Y Z A B C in this order; of rotary axes read deg for mm.
  */
 #define PANEL_AXIS_ROWS(ROW, id, table, address, form, words, unit, decimals, least, most, states, \
                         meaning)                                                                   \
@@ -380,7 +382,10 @@ static inline const struct panel_text *panel_text(const struct panel_register *r
 /* The row that has this register among its own; REGISTER_COUNT: none. */
 enum panel_id takt_panel_find(enum modbus_table table, uint16_t address);
 
-/* No row has this register, but one behind it has: it reads as 0, so that rows around it may be read at once. */
+/*
+ * No row has this register, but one behind it has: it reads as 0, so that rows around it may be
+ * read at once.
+ */
 bool takt_panel_is_gap(enum modbus_table table, uint16_t address);
 
 /* The row of that name, upper or lower case; REGISTER_COUNT: none. */

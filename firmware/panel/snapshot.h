@@ -7,8 +7,9 @@
 #include "panel/registers.h"
 
 /*
- * The value of every register at one moment, in counts of its row; below 0 in two's complement, as on the wire. Registers that belong to the mailbox or to one client
- * (UPLOAD_..., MDI_TEXT, PASSWORD, REFUSAL, CONTROL, VERSION, PROGRAM_MAX) are not used.
+ * The value of every register at one moment, in counts of its row; below 0 in two's complement, as
+ * on the wire. Registers that belong to the mailbox or to one client (UPLOAD_..., MDI_TEXT,
+ * PASSWORD, REFUSAL, CONTROL, VERSION, PROGRAM_MAX) are not used.
  */
 struct panel_snapshot {
     uint32_t value[REGISTER_COUNT];
@@ -59,7 +60,10 @@ enum panel_verdict {
 struct panel_port {
     /* The latest snapshot. Must not wait. */
     void (*look)(void *context, struct panel_snapshot *snapshot);
-    /* Does what is ordered, all or nothing; snapshots from now on show it. May wait for a control cycle. */
+    /*
+     * Does what is ordered, all or nothing; snapshots from now on show it. May wait for a control
+     * cycle.
+     */
     enum panel_verdict (*order)(void *context, const struct panel_order *order);
     /* The panel in control has asked something: the watchdog starts anew. */
     void (*alive)(void *context);

@@ -1,31 +1,44 @@
 /*
- * A program on its way in: begun with its size and CRC-32, brought chunk by chunk in order, committed when all of it is
- * there and the CRC is right.
+ * A program on its way in: begun with its size and CRC-32, brought chunk by chunk in order,
+ * committed when all of it is there and the CRC is right.
  */
 #ifndef TAKT_PANEL_UPLOAD_H
 #define TAKT_PANEL_UPLOAD_H
 
 #include "panel/registers.h"
 
-/* Where the bytes are kept until they are a program. None of these may keep the control cycle waiting. */
+/*
+ * Where the bytes are kept until they are a program. None of these may keep the control cycle
+ * waiting.
+ */
 struct panel_store {
     /* Room for a program of size bytes; what was brought before is dropped. False: no room. */
     bool (*begin)(void *context, uint32_t size);
     /* Bytes at an offset, within the size. */
     bool (*write)(void *context, uint32_t offset, const uint8_t *data, size_t length);
-    /* All bytes are there and right: makes them durable beside the program there is. False: cannot. */
+    /*
+     * All bytes are there and right: makes them durable beside the program there is. False: cannot.
+     */
     bool (*prepare)(void *context);
-    /* The controller has taken the program: puts it in the place of the one before, at once or not at all. False: the
-     * new program runs, but is not kept over power-off. */
+    /*
+     * The controller has taken the program: puts it in the place of the one before, at once or not
+     * at all. False: the new program runs, but is not kept over power-off.
+     */
     bool (*place)(void *context);
-    /* The same as begin, of a program that is run while it comes; then how it ended: all bytes are there and right, or no
-     * more will come. NULL, both: this store does not do that. */
+    /*
+     * The same as begin, of a program that is run while it comes; then how it ended: all bytes are
+     * there and right, or no more will come. NULL, both: this store does not do that.
+     */
     bool (*begin_stream)(void *context, uint32_t size);
     void (*end_stream)(void *context, bool right);
-    /* Why begin, write, prepare or place has said false last, into text[PANEL_ALARM_TEXT_MAX]: it ends with a zero, empty: it
-     * has not. NULL: this store does not know. */
+    /*
+     * Why begin, write, prepare or place has said false last, into text[PANEL_ALARM_TEXT_MAX]: it
+     * ends with a zero, empty: it has not. NULL: this store does not know.
+     */
     void (*why)(void *context, char *text);
-    /* Bytes that write takes now. NULL: any. Less than a chunk is no fault: what runs makes room. */
+    /*
+     * Bytes that write takes now. NULL: any. Less than a chunk is no fault: what runs makes room.
+     */
     uint32_t (*room)(void *context);
     void *context; /* owned by whoever made the store */
 };
@@ -50,8 +63,9 @@ bool takt_panel_upload_stream(struct panel_upload *upload, const struct panel_st
 uint32_t takt_panel_upload_room(const struct panel_upload *upload, const struct panel_store *store);
 
 /*
- * A chunk. It may repeat bytes that are there already (the reply to it may have been lost) but leave none out. False: it
- * does not fit, its check is wrong, or no upload is open; nothing has changed.
+ * A chunk. It may repeat bytes that are there already (the reply to it may have been lost) but
+ * leave none out. False: it does not fit, its check is wrong, or no upload is open; nothing has
+ * changed.
  */
 bool takt_panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
                             uint32_t offset, const uint8_t *data, size_t length, uint16_t check);

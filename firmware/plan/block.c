@@ -5,11 +5,13 @@
  *     x'   = x_s v
  *     x''  = x_s a + x_ss v^2
  *     x''' = x_s j + 3 x_ss v a + x_sss v^3
- * On a line only x_s is not zero. On an arc x_ss is normal to x_s and x_sss points back along it, so in its plane
+ * On a line only x_s is not zero. On an arc x_ss is normal to x_s and x_sss points back along it,
+ * so in its plane
  *     |x''|^2  = (first a)^2 + (second v^2)^2
  *     |x'''|^2 = (first j + third v^3)^2 + (3 second v a)^2       (worst sign of j)
- * The parts given to each term: curvature ARC_ACCELERATION of the acceleration and ARC_JERK of the jerk at cruise;
- * RAMP_NORMAL and RAMP_ALONG bound the two components of jerk in a ramp (0.6^2 + 0.8^2 = 1).
+ * The parts given to each term: curvature ARC_ACCELERATION of the acceleration and ARC_JERK of the
+ * jerk at cruise; RAMP_NORMAL and RAMP_ALONG bound the two components of jerk in a ramp (0.6^2 +
+ * 0.8^2 = 1).
  */
 #include "plan/block.h"
 
@@ -21,13 +23,22 @@
 
 #include <string.h>
 
-/* A junction that uses a part of the jerk budget uses at most this part of it of the acceleration (junction.c). */
+/*
+ * A junction that uses a part of the jerk budget uses at most this part of it of the acceleration
+ * (junction.c).
+ */
 #define ACCELERATION_PER_JERK_BUDGET 0.2
 
-/* An axis outside the plane of an arc of two radii accelerates a little at constant feed: at most this part. */
+/*
+ * An axis outside the plane of an arc of two radii accelerates a little at constant feed: at most
+ * this part.
+ */
 #define SPIRAL_PART 0.1
 
-/* A block lasts at least cycle / CYCLE_BLOCKS_MAX, so that a cycle passes a bounded number of junctions. */
+/*
+ * A block lasts at least cycle / CYCLE_BLOCKS_MAX, so that a cycle passes a bounded number of
+ * junctions.
+ */
 #define CYCLE_BLOCKS_MAX 8.0
 
 struct bound {
@@ -76,7 +87,10 @@ static void limit_arc_ramp(struct block *b, double jerk_budget, double v)
     b->j_mm_s3 = maths_min(b->j_mm_s3, j);
 }
 
-/* Limits are found for the highest override, so that they hold while the feed is on its way to a lower one. */
+/*
+ * Limits are found for the highest override, so that they hold while the feed is on its way to a
+ * lower one.
+ */
 void takt_block_set_jerk_budget(struct block *b, double jerk_budget)
 {
     TAKT_ASSERT(jerk_budget >= 0.0 && jerk_budget <= BLOCK_JERK_BUDGET_MAX);
@@ -120,10 +134,10 @@ enum governor takt_block_governor(const struct block *b, double program_mm_s)
 }
 
 /*
- * Limits of one axis that moves straight along the path, or, beside an arc of two radii, nearly so: with
- * u = second v^2 / A and w = (third v^3 + 3 second v a) / J it keeps u <= SPIRAL_PART and both terms of w <= SPIRAL_PART / 2
- * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_JERK_BUDGET_MAX): what junctions
- * take is taken from a and j alone.
+ * Limits of one axis that moves straight along the path, or, beside an arc of two radii, nearly so:
+ * with u = second v^2 / A and w = (third v^3 + 3 second v a) / J it keeps u <= SPIRAL_PART and both
+ * terms of w <= SPIRAL_PART / 2 at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The
+ * factor 2 = 1 / (1 - BLOCK_JERK_BUDGET_MAX): what junctions take is taken from a and j alone.
  */
 static void limit_line_axis(struct block_shape *shape, struct bound *c,
                             const struct curve_bounds *bounds, const struct plan_limits *limits,
@@ -152,7 +166,10 @@ static void limit_line_axis(struct block_shape *shape, struct bound *c,
     }
 }
 
-/* Chord error: v = (2/cycle) sqrt(2 R d - d^2) (cycle-frequency page, (3) turned round); R <= d needs none. */
+/*
+ * Chord error: v = (2/cycle) sqrt(2 R d - d^2) (cycle-frequency page, (3) turned round); R <= d
+ * needs none.
+ */
 static double chord_feed(double radius_mm, double chord_mm, double cycle_s)
 {
     TAKT_ASSERT(radius_mm >= 0.0 && cycle_s > 0.0);
@@ -162,7 +179,10 @@ static double chord_feed(double radius_mm, double chord_mm, double cycle_s)
     return 2.0 / cycle_s * maths_sqrt(chord_mm * (2.0 * radius_mm - chord_mm));
 }
 
-/* On an involute the chord from its base circle is the worst: whichever of both rules allows more holds. */
+/*
+ * On an involute the chord from its base circle is the worst: whichever of both rules allows more
+ * holds.
+ */
 static double chord_ceiling(const struct curve *curve, const struct curve_bounds *bounds,
                             const struct plan_limits *limits)
 {
@@ -178,8 +198,9 @@ static double chord_ceiling(const struct curve *curve, const struct curve_bounds
 }
 
 /*
- * On an arc of two radii x_ss and x_sss are not quite normal to the path and along it. What the formulas at the top
- * miss is at most along (second v^2) in acceleration, and along (3 second v a) + across (third v^3) in jerk.
+ * On an arc of two radii x_ss and x_sss are not quite normal to the path and along it. What the
+ * formulas at the top miss is at most along (second v^2) in acceleration, and along (3 second v a)
+ * + across (third v^3) in jerk.
  */
 static void limit_curved_plane(struct block_shape *shape, enum axis first, enum axis second,
                                const struct curve_bounds *bounds, const struct plan_limits *limits)
@@ -199,8 +220,9 @@ static void limit_curved_plane(struct block_shape *shape, enum axis first, enum 
 }
 
 /*
- * A piece that begins or ends on an involute's base circle is gone from or to rest: its curvature there is bounded by what
- * the ramp does (geometry/involute.h), so the plane's axes count like one that moves straight, with lower limits.
+ * A piece that begins or ends on an involute's base circle is gone from or to rest: its curvature
+ * there is bounded by what the ramp does (geometry/involute.h), so the plane's axes count like one
+ * that moves straight, with lower limits.
  */
 static void limit_cusp_plane(struct block_shape *shape, enum axis first, enum axis second,
                              const struct curve_bounds *bounds, const struct plan_limits *limits)

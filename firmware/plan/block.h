@@ -1,8 +1,8 @@
 /*
  * A block: a stretch of one curve, and the limits of the feed along it.
  *
- * Everything here is found once, when the block and its neighbours are known; what the operator does later (override)
- * is applied where ceilings are made of blocks (ceiling.h).
+ * Everything here is found once, when the block and its neighbours are known; what the operator
+ * does later (override) is applied where ceilings are made of blocks (ceiling.h).
  */
 #ifndef TAKT_PLAN_BLOCK_H
 #define TAKT_PLAN_BLOCK_H
@@ -36,12 +36,12 @@ enum junction_kind {
 };
 
 /*
- * How much of the axes' limits one unit of motion along the path needs, at most: from the curve's bounds.
- * Beside it stands what an arc adds; for a line, first is 0.
+ * How much of the axes' limits one unit of motion along the path needs, at most: from the curve's
+ * bounds. Beside it stands what an arc adds; for a line, first is 0.
  */
 struct block_shape {
-    double
-        line_a_mm_s2; /* path acceleration at which the first straight-moving axis reaches its own */
+    /* path acceleration at which the first straight-moving axis reaches its own */
+    double line_a_mm_s2;
     double line_j_mm_s3;  /* likewise jerk */
     double first;         /* plane of an arc: |dx/ds| */
     double second;        /* |d2x/ds2|, 1/mm */
@@ -66,13 +66,13 @@ struct block {
 
     double feed_program_mm_s; /* as programmed; infinite for a rapid */
     double feed_cap_mm_s;     /* axis velocities, chord error, junctions */
-    double
-        feed_max_mm_s; /* feed_cap with curvature and jerk budget: never exceeded, whatever the override */
+    /* feed_cap with curvature and jerk budget: never exceeded, whatever the override */
+    double feed_max_mm_s;
     double a_mm_s2; /* along the path, what curvature and jerk budget leave at that feed */
     double j_mm_s3;
 
-    double
-        jerk_budget_junction; /* part of the jerk limit that blocks near the junction at the end must leave */
+    /* part of the jerk limit that blocks near the junction at the end must leave */
+    double jerk_budget_junction;
     double
         jerk_budget; /* part left to junctions: BLOCK_JERK_BUDGET_MAX until the block is closed */
     double feed_junction_mm_s; /* highest feed at which the junction at the end may be passed */
@@ -83,8 +83,8 @@ void takt_block_set_motion(struct block *b, const struct move *move, const struc
                            const struct plan_limits *limits);
 
 /*
- * Fills b with a piece of a smoothed curve (firmware/smooth), of which unit_mm of path are passed in a second of its
- * nominal time. Its end is a stop until takt_block_join_smooth().
+ * Fills b with a piece of a smoothed curve (firmware/smooth), of which unit_mm of path are passed
+ * in a second of its nominal time. Its end is a stop until takt_block_join_smooth().
  */
 void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm);
 
@@ -94,7 +94,10 @@ void takt_block_join_smooth(struct block *b, const struct block *next);
 /* Fills b with something that happens while the axes stand. */
 void takt_block_set_wait(struct block *b, const struct move *move);
 
-/* Lowers the ceiling of the feed to feed_mm_s, for the reason given; a higher value changes nothing. */
+/*
+ * Lowers the ceiling of the feed to feed_mm_s, for the reason given; a higher value changes
+ * nothing.
+ */
 void takt_block_cap_feed(struct block *b, double feed_mm_s, enum governor governor);
 
 /* Sets the jerk budget of the junctions and what follows from it. */
@@ -103,7 +106,10 @@ void takt_block_set_jerk_budget(struct block *b, double jerk_budget);
 /* The most this block will ever be allowed: if no junction took any of the jerk. */
 double takt_block_top_feed(const struct block *b);
 
-/* The ceiling of the feed whatever is programmed, and what governs it; GOVERNOR_PROGRAM: there is none. */
+/*
+ * The ceiling of the feed whatever is programmed, and what governs it; GOVERNOR_PROGRAM: there is
+ * none.
+ */
 double takt_block_limit(const struct block *b, enum governor *governor);
 
 /* What governs a feed ceiling of program_mm_s (programmed feed with the override) on this block. */

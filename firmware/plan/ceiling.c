@@ -1,11 +1,12 @@
 /*
- * Goal: the highest feed of the trapezoidal reference everywhere, from which the rest of the window can be met and stopped, in
- * time linear in blocks. How the pieces lie against the blocks, and why limits then hold for the setpoint, is in
- * spans.md.
+ * Goal: the highest feed of the trapezoidal reference everywhere, from which the rest of the window
+ * can be met and stopped, in time linear in blocks. How the pieces lie against the blocks, and why
+ * limits then hold for the setpoint, is in spans.md.
  *
- * Forward: one piece for each ceiling, shifted by half the averaging window times its feed; and where a block's acceleration
- * is lower than what lies there, that from half the window times its highest feed before it on. Backward (ceiling_backward.c):
- * the feed at the end of each piece, by constant deceleration: u = min(c^2, u_next + 2 a L).
+ * Forward: one piece for each ceiling, shifted by half the averaging window times its feed; and
+ * where a block's acceleration is lower than what lies there, that from half the window times its
+ * highest feed before it on. Backward (ceiling_backward.c): the feed at the end of each piece, by
+ * constant deceleration: u = min(c^2, u_next + 2 a L).
  */
 #include "plan/ceiling.h"
 
@@ -21,15 +22,21 @@ _Static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
 _Static_assert(sizeof(struct ceiling_piece) == 20, "no padding");
 
 /*
- * Between being asked for and being taken a ceiling grows this many cycles old at most (MOTION_EXCHANGE_CYCLES and the
- * cycles of taking it).
+ * Between being asked for and being taken a ceiling grows this many cycles old at most
+ * (MOTION_EXCHANGE_CYCLES and the cycles of taking it).
  */
 #define AGE_CYCLES 64.0
 
-/* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most this many at once. */
+/*
+ * Lower accelerations of blocks left behind, that the setpoint still has to keep: at most this many
+ * at once.
+ */
 #define TRAILING_MAX 16
 
-/* A junction feed that the trapezoidal reference reaches from rest in this many cycles is not worth passing: it comes to rest. */
+/*
+ * A junction feed that the trapezoidal reference reaches from rest in this many cycles is not worth
+ * passing: it comes to rest.
+ */
 #define PASS_WORTH 2.0
 
 struct trailing_limit {
@@ -43,11 +50,11 @@ struct builder {
     const struct ceiling_request *request;
     double cycle_s;
     uint32_t cycles; /* of the first box, in the span being laid */
-    double
-        behind; /* cycles that the setpoint follows behind the trapezoidal reference, with the margin */
+    /* cycles that the setpoint follows behind the trapezoidal reference, with the margin */
+    double behind;
     double begin_mm; /* where the newest ceiling begins, */
-    double
-        early_mm; /* and where it would at the highest override: its acceleration counts from there on */
+    /* and where it would at the highest override: its acceleration counts from there on */
+    double early_mm;
     double fastest;  /* the highest feed of those laid so far */
     double gentlest; /* and the lowest acceleration */
     uint32_t start;  /* block that begins what is being laid */
@@ -91,8 +98,9 @@ double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, 
 }
 
 /*
- * Could the trapezoidal reference not come to rest before a place any more when this ceiling is taken? By then it has gone on at its
- * feed, which it keeps for a window before it brakes: w t + w^2 / 2 a.
+ * Could the trapezoidal reference not come to rest before a place any more when this ceiling is
+ * taken? By then it has gone on at its feed, which it keeps for a window before it brakes: w t +
+ * w^2 / 2 a.
  */
 static bool is_near(const struct builder *s, uint64_t at)
 {
@@ -102,8 +110,9 @@ static bool is_near(const struct builder *s, uint64_t at)
 }
 
 /*
- * The window of a span is a promise to a trapezoidal reference that has begun it, or may begin it or land at its start under the
- * ceiling made before; to others it is found anew until all of the span is known.
+ * The window of a span is a promise to a trapezoidal reference that has begun it, or may begin it
+ * or land at its start under the ceiling made before; to others it is found anew until all of the
+ * span is known.
  */
 static struct span_window find_window(const struct builder *s, uint32_t index)
 {
@@ -169,8 +178,8 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, float feed
 }
 
 /*
- * Drops the pieces from k on that nothing is left of, or a cycle would come to more than it looks at: all but the first
- * of a ceiling, which still binds until the setpoint has left it.
+ * Drops the pieces from k on that nothing is left of, or a cycle would come to more than it looks
+ * at: all but the first of a ceiling, which still binds until the setpoint has left it.
  */
 static void drop_empty(struct ceiling *c, uint32_t k)
 {
@@ -188,9 +197,9 @@ static void drop_empty(struct ceiling *c, uint32_t k)
 }
 
 /*
- * A ceiling begins where the trapezoidal reference is when the setpoint, following at that feed, reaches at_mm. What lay there
- * ends there; never before the beginning of the ceiling before it, since a faster one behind a slower cannot bind
- * earlier.
+ * A ceiling begins where the trapezoidal reference is when the setpoint, following at that feed,
+ * reaches at_mm. What lay there ends there; never before the beginning of the ceiling before it,
+ * since a faster one behind a slower cannot bind earlier.
  */
 static void begin_ceiling(struct builder *s, double at_mm, double reference_mm)
 {
@@ -216,8 +225,9 @@ static void divide(struct ceiling *c, uint32_t k, double at_mm)
 }
 
 /*
- * What has been laid from a place on allows no more than the block being laid. It begins with a piece of its own, if need be
- * behind one without length: a trapezoidal reference may have to stay in what was there before (motion/reference_place.c).
+ * What has been laid from a place on allows no more than the block being laid. It begins with a
+ * piece of its own, if need be behind one without length: a trapezoidal reference may have to stay
+ * in what was there before (motion/reference_place.c).
  */
 static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
 {
@@ -237,8 +247,9 @@ static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
 }
 
 /*
- * The setpoint may be in a block of less acceleration until the trapezoidal reference is at end_mm, by the block's highest feed:
- * another override must not take back what was said. Forgets what that implies.
+ * The setpoint may be in a block of less acceleration until the trapezoidal reference is at end_mm,
+ * by the block's highest feed: another override must not take back what was said. Forgets what that
+ * implies.
  */
 static void add_trailing(struct builder *s, double a, double end_mm)
 {
@@ -262,7 +273,10 @@ static void add_trailing(struct builder *s, double a, double end_mm)
     s->trailing_count = kept + 1;
 }
 
-/* The pieces of one ceiling up to end_mm: first those where a block left behind asks for less acceleration. */
+/*
+ * The pieces of one ceiling up to end_mm: first those where a block left behind asks for less
+ * acceleration.
+ */
 static void append_pieces(struct builder *s, double end_mm, float feed_mm_s, double a,
                           uint32_t leave)
 {
@@ -334,8 +348,8 @@ static void lay_block(struct builder *s, uint32_t index)
 }
 
 /*
- * Cycles of slowing down within which a landing at feed w can make up for any fraction of a cycle's way: with
- * n (n + N + 1) a >= 2 w (motion/landing.h).
+ * Cycles of slowing down within which a landing at feed w can make up for any fraction of a cycle's
+ * way: with n (n + N + 1) a >= 2 w (motion/landing.h).
  */
 static double landing_ramp(double feed, double a, double window)
 {
@@ -345,9 +359,10 @@ static double landing_ramp(double feed, double a, double window)
 }
 
 /*
- * A junction that is landed: the trapezoidal reference passes it at constant feed for a whole window, so that a setpoint can be put
- * on it; before that it makes up for the fraction of a cycle's way that is missing, and for the cycle in which it comes
- * into the piece. Two such junctions need room between.
+ * A junction that is landed: the trapezoidal reference passes it at constant feed for a whole
+ * window, so that a setpoint can be put on it; before that it makes up for the fraction of a
+ * cycle's way that is missing, and for the cycle in which it comes into the piece. Two such
+ * junctions need room between.
  */
 static void lay_landed_junction(struct builder *s, uint32_t index)
 {
@@ -375,7 +390,10 @@ static void lay_landed_junction(struct builder *s, uint32_t index)
     p->landed = true;
 }
 
-/* For one block more: a piece for each trailing limit and one without, one of lower acceleration before, and a landed junction. */
+/*
+ * For one block more: a piece for each trailing limit and one without, one of lower acceleration
+ * before, and a landed junction.
+ */
 static bool has_room(const struct builder *s)
 {
     return s->c->count + s->trailing_count + 3U <= CEILING_PIECES_MAX;

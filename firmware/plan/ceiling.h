@@ -1,15 +1,17 @@
 /*
- * The feed ceiling ahead: what the trapezoidal reference may do where, made of blocks for one setting of the overrides.
+ * The feed ceiling ahead: what the trapezoidal reference may do where, made of blocks for one
+ * setting of the overrides.
  *
  *    feed |  ____                    ____________      pieces end to end, each with a ceiling, an acceleration and the
  *         |      \      ____________/            \     feed at its end from which everything after it can be met
  *         |       \____/                          \    (a line in feed squared: constant deceleration)
  *         +------------------------------------------> path position
  *
- * Positions are those of the trapezoidal reference: a slow stretch begins for it as much earlier as the setpoint follows behind, at the
- * feed that the overrides allow; a lower acceleration counts from where the block's highest feed would begin on, so that no
- * override changes how hard the trapezoidal reference may brake anywhere.
- * Units here are mm and control cycles: feeds mm/cycle, accelerations mm/cycle2. See spans.md.
+ * Positions are those of the trapezoidal reference: a slow stretch begins for it as much earlier as
+ * the setpoint follows behind, at the feed that the overrides allow; a lower acceleration counts
+ * from where the block's highest feed would begin on, so that no override changes how hard the
+ * trapezoidal reference may brake anywhere. Units here are mm and control cycles: feeds mm/cycle,
+ * accelerations mm/cycle2. See spans.md.
  */
 #ifndef TAKT_PLAN_CEILING_H
 #define TAKT_PLAN_CEILING_H
@@ -18,28 +20,35 @@
 #include <stdint.h>
 
 /*
- * Pieces of one ceiling at most. A block has one or two, and neighbours of the same limits share one. Where this is not
- * enough the ceiling is not complete: it ends at rest before the last blocks. With 272 a smoothed spiral takes 0.3 % longer,
- * with 288 0.08 %, with 304 none that was tried.
+ * Pieces of one ceiling at most. A block has one or two, and neighbours of the same limits share
+ * one. Where this is not enough the ceiling is not complete: it ends at rest before the last
+ * blocks. With 272 a smoothed spiral takes 0.3 % longer, with 288 0.08 %, with 304 none that was
+ * tried.
  */
 #define CEILING_PIECES_MAX 288
 
 /* No piece. */
 #define CEILING_NONE 511U
 
-/* Cycles beside half a window by which a ceiling begins earlier: differences of setpoints reach over three cycles. */
+/*
+ * Cycles beside half a window by which a ceiling begins earlier: differences of setpoints reach
+ * over three cycles.
+ */
 #define CEILING_MARGIN_CYCLES 2.0
 
-/* What the operator may do in a piece: hold, override the feed or the rapids; and its feed follows the spindle. */
+/*
+ * What the operator may do in a piece: hold, override the feed or the rapids; and its feed follows
+ * the spindle.
+ */
 #define CEILING_HOLD    1U
 #define CEILING_FEED    2U
 #define CEILING_RAPID   4U
 #define CEILING_SPINDLE 8U
 
 /*
- * Small, since two ceilings of all pieces are kept: limits are of single precision, not above the exact ones, and what can
- * be met is kept as a feed, not as its square. Feeds are mm/s here, so that one that is programmed is exact; ceiling_feed()
- * makes them mm/cycle.
+ * Small, since two ceilings of all pieces are kept: limits are of single precision, not above the
+ * exact ones, and what can be met is kept as a feed, not as its square. Feeds are mm/s here, so
+ * that one that is programmed is exact; ceiling_feed() makes them mm/cycle.
  */
 struct ceiling_piece {
     float feed_mm_s;     /* not above this in the piece, nor until the setpoint has left it */
@@ -93,22 +102,27 @@ struct ceiling_request {
 };
 
 /*
- * The ceiling over the closed blocks of the path, from the first that is asked for on. It ends at rest. Notes the windows
- * of spans in their blocks: the trapezoidal reference may begin a span under the ceiling that was made before.
+ * The ceiling over the closed blocks of the path, from the first that is asked for on. It ends at
+ * rest. Notes the windows of spans in their blocks: the trapezoidal reference may begin a span
+ * under the ceiling that was made before.
  */
 void takt_ceiling_build(struct ceiling *c, struct path *path,
                         const struct ceiling_request *request);
 
 /*
- * Control cycle: where on the path the setpoint comes to what a piece is made of; where it leaves it: path.h. Of what it had
- * left when a ceiling was asked for last: where the block started that it was in.
+ * Control cycle: where on the path the setpoint comes to what a piece is made of; where it leaves
+ * it: path.h. Of what it had left when a ceiling was asked for last: where the block started that
+ * it was in.
  */
 uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k);
 
 /* The highest feed whatever the overrides are, of what a piece begins with, mm/s. */
 float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k);
 
-/* Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is made of. */
+/*
+ * Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is
+ * made of.
+ */
 unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k);
 
 /* Cycles of the first averaging box in the span that begins with a piece. */
@@ -118,7 +132,10 @@ uint32_t takt_ceiling_cycles(const struct ceiling *c, uint32_t k);
 double takt_ceiling_block_feed(const struct path *path, uint32_t index,
                                const struct ceiling_request *request);
 
-/* Acceleration of the trapezoidal reference in it, by the first averaging box: A tau^2, or J tau^3 N; mm/cycle2, single precision. */
+/*
+ * Acceleration of the trapezoidal reference in it, by the first averaging box: A tau^2, or J tau^3
+ * N; mm/cycle2, single precision.
+ */
 double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles);
 
 #endif

@@ -1,6 +1,7 @@
 /*
- * The backward pass over the pieces of a ceiling: the feed at the end of each from which what follows can be met, and the
- * last one stopped at, by constant deceleration: u = min(c^2, u_next + 2 a L), u the feed squared.
+ * The backward pass over the pieces of a ceiling: the feed at the end of each from which what
+ * follows can be met, and the last one stopped at, by constant deceleration: u = min(c^2, u_next +
+ * 2 a L), u the feed squared.
  */
 #include "plan/ceiling_backward.h"
 
@@ -17,7 +18,10 @@ static double square(double x)
 /* Below this a square is 0, mm2/cycle2: what is above has all digits in single precision. */
 #define FEED_SQUARED_MIN 1e-30
 
-/* The feed of single precision whose square is not above a square, mm2/cycle2: three steps below the highest at most. */
+/*
+ * The feed of single precision whose square is not above a square, mm2/cycle2: three steps below
+ * the highest at most.
+ */
 static float feed_below(const struct ceiling *c, double feed_squared)
 {
     float feed_mm_s = single_sqrt((float)feed_squared) / (float)c->cycle_s;
@@ -55,9 +59,10 @@ static float begin_feed(const struct ceiling *c, uint32_t k, float feed_mm_s, fl
 }
 
 /*
- * The feed up to feed at which the trapezoidal reference, when the setpoint is on a landed junction, in piece k, can go on and meet
- * what follows: it is then half the next span's window ahead, at x; by the pieces up to there w is no more than their
- * ceilings, and w^2 <= u + 2 a (x_end - x).
+ * The feed up to feed at which the trapezoidal reference, when the setpoint is on a landed
+ * junction, in piece k, can go on and meet what follows: it is then half the next span's window
+ * ahead, at x; by the pieces up to there w is no more than their ceilings, and w^2 <= u + 2 a
+ * (x_end - x).
  */
 static float landed_feed(const struct ceiling *c, uint32_t k, enum ramp_profile profile,
                          bool highest)
@@ -93,8 +98,9 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum ramp_profile 
 }
 
 /*
- * What the trapezoidal reference may do in a piece from which feeds at its end are known; they become those at its beginning. Under no
- * override is it faster there than under the highest one: an override may be raised at any place.
+ * What the trapezoidal reference may do in a piece from which feeds at its end are known; they
+ * become those at its beginning. Under no override is it faster there than under the highest one:
+ * an override may be raised at any place.
  */
 static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile, float *feed_mm_s,
                        float *max_mm_s)
@@ -116,7 +122,10 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile,
     TAKT_ASSERT(*feed_mm_s >= 0.0F && *feed_mm_s <= p->feed_mm_s);
 }
 
-/* Between a piece and the junction that the span ends with: the pieces that ask for no more than any behind them. */
+/*
+ * Between a piece and the junction that the span ends with: the pieces that ask for no more than
+ * any behind them.
+ */
 static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *low_max_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];

@@ -5,7 +5,10 @@
 #include "plan/ceiling.h"
 #include "plan/ramp_profile.h"
 
-/* Sets the feeds at the ends of all pieces, at the present overrides and at the highest, and what junctions they land at. */
+/*
+ * Sets the feeds at the ends of all pieces, at the present overrides and at the highest, and what
+ * junctions they land at.
+ */
 void takt_ceiling_plan_backward(struct ceiling *c, enum ramp_profile profile);
 
 #endif

@@ -1,16 +1,17 @@
 /*
- * Goal: wherever three cycles fall, the junctions in them take no more of the jerk limit than each block in them has left
- * to junctions.
+ * Goal: wherever three cycles fall, the junctions in them take no more of the jerk limit than each
+ * block in them has left to junctions.
  *
- * A junction and a block fall into the same three cycles only if what lies between them is passed in less. So a block
- * leaves the largest jerk_budget_junction (junction.c) of the junctions at its ends and of those that are nearer to it than that, with
- * the blocks between at their highest feed. It is closed, and seen by others, when so much has been pushed behind it that
- * no further junction is near.
+ * A junction and a block fall into the same three cycles only if what lies between them is passed
+ * in less. So a block leaves the largest jerk_budget_junction (junction.c) of the junctions at its
+ * ends and of those that are nearer to it than that, with the blocks between at their highest feed.
+ * It is closed, and seen by others, when so much has been pushed behind it that no further junction
+ * is near.
  *
  * A walk back has few steps: a block lasts at least an eighth of a cycle (block.c).
  *
- * Rejected: the largest budget for each block beside a short one, whatever its junctions. That needs no walk, but halves the
- * jerk of ramps beside every short block of a straight line.
+ * Rejected: the largest budget for each block beside a short one, whatever its junctions. That
+ * needs no walk, but halves the jerk of ramps beside every short block of a straight line.
  */
 #include "plan/jerk_budget.h"
 

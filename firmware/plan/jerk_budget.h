@@ -7,8 +7,8 @@
 #include "plan/block.h"
 
 /*
- * Blocks that are not closed, at most: 3 cycles near a junction (junction.h), 8 blocks a cycle (block.c), and those at both
- * ends.
+ * Blocks that are not closed, at most: 3 cycles near a junction (junction.h), 8 blocks a cycle
+ * (block.c), and those at both ends.
  */
 #define JERK_BUDGET_BLOCKS_MAX 28
 
@@ -21,8 +21,8 @@ struct jerk_budget_block {
     double feed_cap_mm_s;
     double least_s; /* in which it is passed */
     double jerk_budget_junction;
-    double
-        jerk_budget_near; /* the largest of the junctions near this block, as far as they are known */
+    /* the largest of the junctions near this block, as far as they are known */
+    double jerk_budget_near;
     enum governor cap;
 };
 
@@ -33,8 +33,8 @@ void takt_jerk_budget_begin(struct path *p, uint32_t index, const struct block *
 void takt_jerk_budget_note(struct path *p, uint32_t index, const struct block *b);
 
 /*
- * The newest block has been joined to the one before it: tells that junction to the blocks near it, and closes those that
- * no further junction can be near to.
+ * The newest block has been joined to the one before it: tells that junction to the blocks near it,
+ * and closes those that no further junction can be near to.
  */
 void takt_jerk_budget_spread(struct path *p);
 

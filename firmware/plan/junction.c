@@ -1,31 +1,37 @@
 /*
- * Goal: at every junction passed in motion, the setpoints keep the axes' limits although velocity steps by D v (D the
- * change of tangent) and acceleration by K v^2 (K the change of curvature vector).
+ * Goal: at every junction passed in motion, the setpoints keep the axes' limits although velocity
+ * steps by D v (D the change of tangent) and acceleration by K v^2 (K the change of curvature
+ * vector).
  *
- * What a step costs. Setpoints are samples of the path, one a cycle. The third difference of samples over cycle^3 is
- * the mean of the jerk over three cycles with the quadratic B-spline as weight, whose peak is 3/4 per cycle and whose
- * slope is at most 1 per cycle^2. A step of acceleration (a spike of jerk) therefore shows as at most
- * 3/4 K v^2 / cycle, a step of velocity (a double spike) as D v / cycle^2. Likewise the second difference shows a step
- * of velocity as at most D v / cycle. So with
+ * What a step costs. Setpoints are samples of the path, one a cycle. The third difference of
+ * samples over cycle^3 is the mean of the jerk over three cycles with the quadratic B-spline as
+ * weight, whose peak is 3/4 per cycle and whose slope is at most 1 per cycle^2. A step of
+ * acceleration (a spike of jerk) therefore shows as at most 3/4 K v^2 / cycle, a step of velocity
+ * (a double spike) as D v / cycle^2. Likewise the second difference shows a step of velocity as at
+ * most D v / cycle. So with
  *
  *     P = max_i D_i / (J_i cycle^2),  Q = max_i 3/4 K_i / (J_i cycle),  R = max_i D_i / (A_i cycle)
  *
- * a junction at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration limit. The blocks beside it
- * leave it that part (block.c): up to BLOCK_JERK_BUDGET_MAX.
+ * a junction at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration
+ * limit. The blocks beside it leave it that part (block.c): up to BLOCK_JERK_BUDGET_MAX.
  *
- * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v cycle / 4 <= d over the
- * axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside what the axes can do. Where the motions have a
- * tolerance P, what curves beside the corner take counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
+ * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v cycle / 4
+ * <= d over the axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside
+ * what the axes can do. Where the motions have a tolerance P, what curves beside the corner take
+ * counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
  *
- * Short blocks. Junctions less than three cycles apart add up. With f = min(1, d / (6 cycles)), d the time of the shorter
- * block beside a junction at its ceiling, a junction may use f of the jerk budget. If several fall into three cycles, each block
- * between them, of time D_b, bounds f by D_b / (6 cycles) for the junctions at its two ends, and the D_b add up to less than three
- * cycles: the sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are lowered.
- * Each block that can fall into the same three cycles as a junction (jerk_budget.c) leaves it (what the junction takes) / f: what all
- * junctions of those three cycles take together is then at most what each block in them leaves.
+ * Short blocks. Junctions less than three cycles apart add up. With f = min(1, d / (6 cycles)), d
+ * the time of the shorter block beside a junction at its ceiling, a junction may use f of the jerk
+ * budget. If several fall into three cycles, each block between them, of time D_b, bounds f by D_b
+ * / (6 cycles) for the junctions at its two ends, and the D_b add up to less than three cycles: the
+ * sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are
+ * lowered. Each block that can fall into the same three cycles as a junction (jerk_budget.c) leaves
+ * it (what the junction takes) / f: what all junctions of those three cycles take together is then
+ * at most what each block in them leaves.
  *
- * Rejected: one fixed corner feed (wrong for every other cycle time and angle); using the limit in full at each junction
- * (two junctions in three cycles then break it, seen as jerk of 1.4 times the limit on chains of 0.1 mm blocks).
+ * Rejected: one fixed corner feed (wrong for every other cycle time and angle); using the limit in
+ * full at each junction (two junctions in three cycles then break it, seen as jerk of 1.4 times the
+ * limit on chains of 0.1 mm blocks).
  */
 #include "plan/junction.h"
 
@@ -68,7 +74,10 @@ static double tolerance_of(const struct block *b)
                                                                     : MATHS_INFINITY;
 }
 
-/* Largest v with d v cycle / 4 + k v^2 cycle^2 / 8 <= within, d the change of tangent and k the curvature. */
+/*
+ * Largest v with d v cycle / 4 + k v^2 cycle^2 / 8 <= within, d the change of tangent and k the
+ * curvature.
+ */
 static double feed_within(double d, double k, double within_mm, double cycle_s)
 {
     const double c = d * cycle_s / (4.0 * within_mm);
@@ -109,7 +118,10 @@ static void junction_measure(const struct block *before, const struct block *aft
     }
 }
 
-/* Largest v with P v + Q v^2 <= jerk budget, R v <= acceleration, and the corner near enough: a junction by itself. */
+/*
+ * Largest v with P v + Q v^2 <= jerk budget, R v <= acceleration, and the corner near enough: a
+ * junction by itself.
+ */
 static double alone_feed(const struct junction_steps *steps)
 {
     const double p = steps->p_s_mm;
@@ -123,9 +135,10 @@ static double alone_feed(const struct junction_steps *steps)
 }
 
 /*
- * The same with f = reach / v, reach = length / (6 cycles) the feed at which blocks stop being short:
- * P v^2 + Q v^3 <= jerk budget reach, R v^2 <= acceleration reach and v^2 <= reach times the feed that is near enough. v0, where the larger of the first two terms meets the
- * right side, then scaled by the root of the excess: exact for one term, safe for both.
+ * The same with f = reach / v, reach = length / (6 cycles) the feed at which blocks stop being
+ * short: P v^2 + Q v^3 <= jerk budget reach, R v^2 <= acceleration reach and v^2 <= reach times the
+ * feed that is near enough. v0, where the larger of the first two terms meets the right side, then
+ * scaled by the root of the excess: exact for one term, safe for both.
  */
 static double crowded_feed(const struct junction_steps *steps, double reach_mm_s)
 {
@@ -150,7 +163,10 @@ static double crowded_feed(const struct junction_steps *steps, double reach_mm_s
     return maths_min(v, maths_sqrt(reach_mm_s * steps->within_mm_s));
 }
 
-/* 1/f: how many times shorter than JUNCTION_CYCLES_APART the shorter block beside a junction lasts at its ceiling. */
+/*
+ * 1/f: how many times shorter than JUNCTION_CYCLES_APART the shorter block beside a junction lasts
+ * at its ceiling.
+ */
 static double junction_crowding(const struct block *before, const struct block *after,
                                 double apart_s)
 {
@@ -171,7 +187,10 @@ static double junction_jerk_budget(const struct junction_steps *steps, double v,
     return maths_min(BLOCK_JERK_BUDGET_MAX, maths_max(jerk, acceleration) * crowding);
 }
 
-/* Keeps d true: a block of length L is passed no faster than L / d, or than it would be if it were not short. */
+/*
+ * Keeps d true: a block of length L is passed no faster than L / d, or than it would be if it were
+ * not short.
+ */
 static double short_ceiling(const struct block *b, double v, double shorter_mm, double apart_s)
 {
     return maths_max(v * b->length_mm / shorter_mm, b->length_mm / apart_s);
@@ -179,14 +198,20 @@ static double short_ceiling(const struct block *b, double v, double shorter_mm, 
 
 /* -- to pass a junction, or to stop -- */
 
-/* Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not reached. */
+/*
+ * Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not
+ * reached.
+ */
 static double ramp_s(double change_mm_s, double a, double j)
 {
     TAKT_ASSERT(change_mm_s >= 0.0 && a > 0.0 && j > 0.0);
     return change_mm_s * j >= a * a ? change_mm_s / a + a / j : 2.0 * maths_sqrt(change_mm_s / j);
 }
 
-/* The feed that a ramp from rest over a length reaches, by full acceleration or by full jerk: V T(V) / 2 = L. */
+/*
+ * The feed that a ramp from rest over a length reaches, by full acceleration or by full jerk: V
+ * T(V) / 2 = L.
+ */
 static double feed_over(double length_mm, double a, double j)
 {
     TAKT_ASSERT(length_mm > 0.0 && a > 0.0 && j > 0.0);
@@ -194,9 +219,9 @@ static double feed_over(double length_mm, double a, double j)
 }
 
 /*
- * The blocks beside a junction, as if they had the lower limits of both: jerk J and acceleration A for ramps if the axes stop
- * there, J (1 - S) if they pass at v < V, V the feed that they reach. Each way a ramp from V down to v loses
- * T (V - v) / 2V of the time at V.
+ * The blocks beside a junction, as if they had the lower limits of both: jerk J and acceleration A
+ * for ramps if the axes stop there, J (1 - S) if they pass at v < V, V the feed that they reach.
+ * Each way a ramp from V down to v loses T (V - v) / 2V of the time at V.
  */
 static bool is_worth_passing(const struct block *before, const struct block *after, double v,
                              double jerk_budget, double cycle_s)
@@ -219,9 +244,10 @@ static bool is_worth_passing(const struct block *before, const struct block *aft
 }
 
 /*
- * The trapezoidal reference brakes in whole cycles, and so comes to a low feed too late: by half of a cycle's way at the feed before,
- * or by a cycle2 / 8 at most. The two cycles by which a ceiling begins earlier (ceiling.h) make up for that if it is at least
- * a quarter of that feed, or a cycle / 16. A slower block is come to at rest.
+ * The trapezoidal reference brakes in whole cycles, and so comes to a low feed too late: by half of
+ * a cycle's way at the feed before, or by a cycle2 / 8 at most. The two cycles by which a ceiling
+ * begins earlier (ceiling.h) make up for that if it is at least a quarter of that feed, or a cycle
+ * / 16. A slower block is come to at rest.
  */
 static bool is_too_slow(const struct block *before, const struct block *after, double cycle_s)
 {

@@ -11,7 +11,10 @@
 enum landing {
     LANDING_SPAN,  /* where spans end: stops, and junctions that need a lower feed */
     LANDING_BLOCK, /* at every block's end, as the source has it */
-    LANDING_SCALE /* likewise, by the source's factor kl on the feed: not planned here, but in classic/product.h */
+    /*
+     * likewise, by the source's factor kl on the feed: not planned here, but in classic/product.h
+     */
+    LANDING_SCALE
 };
 
 struct plan_limits {

@@ -31,8 +31,8 @@ static void init_smooth(struct path *p)
 }
 
 /*
- * Has it been appended? That alone is asked of an index here: the cycle may pass blocks, or drop the path, while the background
- * reads them, which is safe as long as it appends none meanwhile.
+ * Has it been appended? That alone is asked of an index here: the cycle may pass blocks, or drop
+ * the path, while the background reads them, which is safe as long as it appends none meanwhile.
  */
 static bool is_pushed(const struct path *p, uint32_t index)
 {
@@ -312,8 +312,8 @@ static bool turns_rotary(const struct path *p, const struct move *move)
 }
 
 /*
- * Where position begins or ceases to follow the spindle the axes stand; so they do in the hole, and out of it; and where
- * others than the planner move the linear axes, but not the rotary ones.
+ * Where position begins or ceases to follow the spindle the axes stand; so they do in the hole, and
+ * out of it; and where others than the planner move the linear axes, but not the rotary ones.
  */
 static bool is_divided(const struct path *p, const struct move *move)
 {
@@ -403,8 +403,8 @@ static bool joins_chain(struct path *p, const struct move *move)
 }
 
 /*
- * Nothing follows in the chain. One line from rest to rest is planned like an exact one: nothing is quicker. There was room
- * for it when it came, and nothing has been appended since.
+ * Nothing follows in the chain. One line from rest to rest is planned like an exact one: nothing is
+ * quicker. There was room for it when it came, and nothing has been appended since.
  */
 static void finish_chain(struct path *p)
 {

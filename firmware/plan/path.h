@@ -3,8 +3,9 @@
  *
  *     push -> [ block | block | ... | block ] -> pass
  *
- * Only the background writes blocks, and count; only the cycle moves first. A block is closed, and seen by
- * others, when the junctions at its end and near it are known: what is there has been pushed, or nothing will be.
+ * Only the background writes blocks, and count; only the cycle moves first. A block is closed, and
+ * seen by others, when the junctions at its end and near it are known: what is there has been
+ * pushed, or nothing will be.
  */
 #ifndef TAKT_PLAN_PATH_H
 #define TAKT_PLAN_PATH_H
@@ -26,8 +27,8 @@ union path_spare {
 };
 
 /*
- * Two ceilings at the ends of one area. All that the one in use leaves is free while there is no other, and more than a
- * ceiling where smoothing needs it:
+ * Two ceilings at the ends of one area. All that the one in use leaves is free while there is no
+ * other, and more than a ceiling where smoothing needs it:
  *
  *     | ceiling 0 |         spare         |
  *     |         spare         | ceiling 1 |
@@ -72,23 +73,27 @@ struct path {
     struct path_ring ring;
     struct smooth smooth; /* motions that are not in the ring yet: a chain being smoothed */
     union path_area area; /* of the ceiling in use and the next one */
-    unsigned
-        spare; /* the one of them that is no ceiling: motions are smoothed as long as there is one; PATH_NO_SPARE */
+    /*
+     * the one of them that is no ceiling: motions are smoothed as long as there is one;
+     * PATH_NO_SPARE
+     */
+    unsigned spare;
 };
 
 /* start: where the machine stands. */
 void takt_path_init(struct path *p, const struct plan_limits *limits, const struct point *start);
 /*
- * Memory for something else, at a multiple of 8, in a path that smooths nothing from here on: no move of PATH_BLEND comes
- * before it is initialised again. size: of that, PATH_LENT_MAX at most.
+ * Memory for something else, at a multiple of 8, in a path that smooths nothing from here on: no
+ * move of PATH_BLEND comes before it is initialised again. size: of that, PATH_LENT_MAX at most.
  */
 #define PATH_LENT_MAX (offsetof(struct smooth, change) - offsetof(struct smooth, route))
 void *takt_path_lend(struct path *p, size_t size);
 /* Room for one more move? */
 bool takt_path_has_room(const struct path *p);
 /*
- * How many blocks there should be ahead where this many are asked for: pieces of a smoothed chain are not blocks of the
- * program, and are needed to brake on; a compiled program passes blocks whether they are known or not.
+ * How many blocks there should be ahead where this many are asked for: pieces of a smoothed chain
+ * are not blocks of the program, and are needed to brake on; a compiled program passes blocks
+ * whether they are known or not.
  */
 uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks);
 /* Appends the next move; a motion without length is counted and dropped. Needs room. */
@@ -104,7 +109,10 @@ static inline const struct path_block *path_at(const struct path *p, uint32_t in
 {
     return ring_at(&p->ring, index);
 }
-/* Path position of its start, index == pushed: where the next one will start; of its end; and its length, mm. */
+/*
+ * Path position of its start, index == pushed: where the next one will start; of its end; and its
+ * length, mm.
+ */
 static inline uint64_t path_start(const struct path *p, uint32_t index)
 {
     return index == p->pushed ? p->position : path_at(p, index)->start;
@@ -119,7 +127,10 @@ static inline struct ceiling *path_ceiling(struct path *p, unsigned which)
 {
     return which == 0 ? &p->area.low.ceiling : &p->area.high.ceiling;
 }
-/* A block of a ceiling. Those before the oldest that is kept may have been overwritten: that one stands for them. */
+/*
+ * A block of a ceiling. Those before the oldest that is kept may have been overwritten: that one
+ * stands for them.
+ */
 static inline uint32_t path_of_ceiling(const struct ceiling *c, unsigned block)
 {
     const uint32_t kept = c->path->kept;
@@ -138,8 +149,8 @@ double takt_path_feed_rev(const struct path *p, uint32_t index);
 /* Its move, but for its feed: that is 0. */
 void takt_path_read_move(const struct path *p, uint32_t index, struct move *move);
 /*
- * Control cycle: the whole block as it is executed, valid until the one two further on or two before is read. Of what its
- * limits are made of only feed_cap_mm_s and cap are filled.
+ * Control cycle: the whole block as it is executed, valid until the one two further on or two
+ * before is read. Of what its limits are made of only feed_cap_mm_s and cap are filled.
  */
 static inline const struct block *path_read(struct path *p, uint32_t index)
 {
@@ -158,7 +169,10 @@ static inline const struct block *path_first(struct path *p)
 {
     return path_read(p, p->first);
 }
-/* Background: the averaging window that a span beginning with this block was planned with; known: to its end. */
+/*
+ * Background: the averaging window that a span beginning with this block was planned with; known:
+ * to its end.
+ */
 void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known);
 /* The oldest block has been passed. */
 void takt_path_pass(struct path *p);

@@ -1,9 +1,10 @@
 /*
  * Path positions as whole numbers: 2^38 units a mm (or a rad), 3.6e-12 mm each.
  *
- * Positions count from the start of the program and may wrap; only their differences have a meaning. Sums of them are
- * exact, so that an average that runs for days does not drift, and landing is a comparison of integers. Differences up to
- * 2^53 units (32 m) are exact in mm, too: what is worked out from them does not depend on what they are counted from.
+ * Positions count from the start of the program and may wrap; only their differences have a
+ * meaning. Sums of them are exact, so that an average that runs for days does not drift, and
+ * landing is a comparison of integers. Differences up to 2^53 units (32 m) are exact in mm, too:
+ * what is worked out from them does not depend on what they are counted from.
  */
 #ifndef TAKT_PLAN_PATH_UNIT_H
 #define TAKT_PLAN_PATH_UNIT_H

@@ -2,7 +2,10 @@
 
 #include "base/assert.h"
 
-/* With three boxes: 64 x 32 x 32 = 2^16 times 2^38 units a mm leaves 512 mm between trapezoidal reference and setpoint. */
+/*
+ * With three boxes: 64 x 32 x 32 = 2^16 times 2^38 units a mm leaves 512 mm between trapezoidal
+ * reference and setpoint.
+ */
 uint32_t takt_ramp_profile_cycles_max(enum ramp_profile profile)
 {
     return profile == RAMP_PROFILE_GENTLE ? RAMP_PROFILE_CYCLES_MAX / 4 : RAMP_PROFILE_CYCLES_MAX;

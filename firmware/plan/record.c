@@ -90,8 +90,8 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
 }
 
 /*
- * Control points of a piece of a smoothed curve. Which coordinates of a last one alone there are is said in place of
- * those of an end, unless there is one.
+ * Control points of a piece of a smoothed curve. Which coordinates of a last one alone there are is
+ * said in place of those of an end, unless there is one.
  */
 static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point control[4],
                            struct record_chain *chain, bool has_end)
@@ -265,8 +265,8 @@ void takt_record_read_move(const uint8_t *record, const struct record_modes *mod
 }
 
 /*
- * Reads the last of count control points, as a record of a piece has them: one, or up to four. Returns how many are
- * still missing before those.
+ * Reads the last of count control points, as a record of a piece has them: one, or up to four.
+ * Returns how many are still missing before those.
  */
 static unsigned read_control(const uint8_t *record, struct point control[], unsigned count)
 {

@@ -3,10 +3,12 @@
  *
  *     head | end | start, where that is not where the block before ends | what the kind of move needs
  *
- * A point takes 8 bytes for each coordinate that is not 0. What can be found again to the last bit is left out: a line
- * and an arc are made of their move anew, and a piece of a smoothed curve shares three of its four control points with
- * the piece before. What has been planned with and is of no use to who executes a move, such as its tolerance, is not kept:
- * it is read back as 0. Records have the same size in every build: when a ring of them is full decides how far is planned.
+ * A point takes 8 bytes for each coordinate that is not 0. What can be found again to the last bit
+ * is left out: a line and an arc are made of their move anew, and a piece of a smoothed curve
+ * shares three of its four control points with the piece before. What has been planned with and is
+ * of no use to who executes a move, such as its tolerance, is not kept: it is read back as 0.
+ * Records have the same size in every build: when a ring of them is full decides how far is
+ * planned.
  */
 #ifndef TAKT_PLAN_RECORD_H
 #define TAKT_PLAN_RECORD_H
@@ -17,10 +19,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 314. */
+/*
+ * Bytes of a record at most: an involute of six axes with start, end and a feed per revolution
+ * takes 314.
+ */
 #define RECORD_MAX 320
 
-/* Without pieces of involutes, splines and smoothed curves: an arc of six axes with start, end and turns takes 133. */
+/*
+ * Without pieces of involutes, splines and smoothed curves: an arc of six axes with start, end and
+ * turns takes 133.
+ */
 #define RECORD_SHORT_MAX 136
 
 /* Control points that a piece shares with those before it: this many records back must be kept. */
@@ -42,7 +50,10 @@ struct record_modes {
     uint8_t none[3];
 };
 
-/* The same bits? What is remade from a record is to be what it was, 0 and -0 too. Of what has no padding. */
+/*
+ * The same bits? What is remade from a record is to be what it was, 0 and -0 too. Of what has no
+ * padding.
+ */
 bool takt_record_is_same(const void *a, const void *b, size_t size);
 
 /* Modes of a block; smooth: it is a piece of a smoothed curve. */
@@ -57,8 +68,9 @@ struct record_chain {
 };
 
 /*
- * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which number its
- * modes are kept. Returns the bytes it takes, <= RECORD_MAX, and tells what it leaves for the next one.
+ * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which
+ * number its modes are kept. Returns the bytes it takes, <= RECORD_MAX, and tells what it leaves
+ * for the next one.
  */
 uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
                            const struct point control[4], unsigned modes,
@@ -76,10 +88,10 @@ void takt_record_read_move(const uint8_t *record, const struct record_modes *mod
                            struct move *move);
 
 /*
- * Number, move, curve, and what governs the feed of a block, in four parts, so that a control cycle need not do
- * all: the first returns what the second goes on with; the third tells whether it had anything to do. before: the records
- * of the RECORD_BEFORE blocks before it, the nearest first; NULL where there is none. All else of the block stays as it
- * was.
+ * Number, move, curve, and what governs the feed of a block, in four parts, so that a control cycle
+ * need not do all: the first returns what the second goes on with; the third tells whether it had
+ * anything to do. before: the records of the RECORD_BEFORE blocks before it, the nearest first;
+ * NULL where there is none. All else of the block stays as it was.
  */
 const uint8_t *takt_record_begin(const uint8_t *record, const struct record_modes *modes,
                                  struct block *b);

@@ -1,6 +1,6 @@
 /*
- * The parts of a record, each written and read side by side: points, events, what kinds of motion have beside their ends, and
- * pieces of involutes.
+ * The parts of a record, each written and read side by side: points, events, what kinds of motion
+ * have beside their ends, and pieces of involutes.
  */
 #include "plan/record_parts.h"
 
@@ -70,7 +70,10 @@ static unsigned event_bits(const struct move *m)
            (m->optional ? EVENT_OPTIONAL : 0U);
 }
 
-/* The numbers of every kind lie where those of a spindle do (program/move.h), which has the most of them. */
+/*
+ * The numbers of every kind lie where those of a spindle do (program/move.h), which has the most of
+ * them.
+ */
 void takt_record_put_event(uint8_t **to, const struct move *m)
 {
     bytes_put_double(to, m->speed_rpm);

@@ -1,6 +1,6 @@
 /*
- * Parts of a record (record.h): each is put at a place that moves on, and taken from there again with the same bits. What is
- * taken counts on what the move or block holds by then: its kind.
+ * Parts of a record (record.h): each is put at a place that moves on, and taken from there again
+ * with the same bits. What is taken counts on what the move or block holds by then: its kind.
  */
 #ifndef TAKT_PLAN_RECORD_PARTS_H
 #define TAKT_PLAN_RECORD_PARTS_H

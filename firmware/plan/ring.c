@@ -23,7 +23,9 @@ static uint32_t oldest_record(uint32_t kept)
     return kept > RECORD_BEFORE ? kept - RECORD_BEFORE : 0;
 }
 
-/* Where a record of that size begins that is written now: it does not wrap around. False: no room. */
+/*
+ * Where a record of that size begins that is written now: it does not wrap around. False: no room.
+ */
 static bool find_place(const struct path_ring *r, uint32_t tail, uint32_t size, uint32_t *place)
 {
     TAKT_ASSERT(size <= RECORD_MAX && r->place <= PATH_BYTES_MAX);

@@ -1,6 +1,6 @@
 /*
- * The blocks of the path, as small as they can be: for each one the limits that ceilings are made of, and a record of
- * its move and curve (record.h) in a ring of bytes.
+ * The blocks of the path, as small as they can be: for each one the limits that ceilings are made
+ * of, and a record of its move and curve (record.h) in a ring of bytes.
  *
  * The background writes blocks, and reads their limits; the control cycle reads all of them.
  */
@@ -15,8 +15,9 @@
 #include <stdint.h>
 
 /*
- * Blocks in the ring: the look-ahead of 256, those between the setpoint and the trapezoidal reference that runs ahead of it
- * (firmware/motion), both ends included, and RECORD_BEFORE that have been passed.
+ * Blocks in the ring: the look-ahead of 256, those between the setpoint and the trapezoidal
+ * reference that runs ahead of it (firmware/motion), both ends included, and RECORD_BEFORE that
+ * have been passed.
  */
 #define PATH_BLOCKS_MAX 320
 
@@ -26,12 +27,15 @@
 /* Records begin at multiples of this. */
 #define PATH_BYTES_STEP 4
 
-/* Different modes that may be in the ring at once: one for each block that is not closed, at least (path.h). */
+/*
+ * Different modes that may be in the ring at once: one for each block that is not closed, at least
+ * (path.h).
+ */
 #define PATH_MODES_MAX 28
 
 /*
- * Limits of a block, of single precision and never above the exact ones. All of them are the background's: the cycle reads
- * them only.
+ * Limits of a block, of single precision and never above the exact ones. All of them are the
+ * background's: the cycle reads them only.
  */
 struct path_block {
     uint64_t start;          /* path position, path units (path_unit.h) */
@@ -55,7 +59,10 @@ struct path_block {
     unsigned smooth : 1;         /* a piece of a smoothed curve */
 };
 
-/* How much of a block has been read: nothing, its head, all numbers, half of an arc's curve, the whole curve, all. */
+/*
+ * How much of a block has been read: nothing, its head, all numbers, half of an arc's curve, the
+ * whole curve, all.
+ */
 enum view_state { VIEW_EMPTY, VIEW_BEGUN, VIEW_TAKEN, VIEW_CURVED, VIEW_FINISHED, VIEW_READ };
 
 /* A block as it is executed. */
@@ -79,10 +86,16 @@ struct path_ring {
         view[2]; /* of blocks of even and of odd numbers: the oldest and the one behind it */
 };
 
-/* Room for one more block, whose record has size bytes at most? Blocks kept <= index < pushed are kept. */
+/*
+ * Room for one more block, whose record has size bytes at most? Blocks kept <= index < pushed are
+ * kept.
+ */
 bool takt_ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size);
 
-/* Writes block b, the one of number pushed. Needs room. control: of a piece of a smoothed curve, else NULL. */
+/*
+ * Writes block b, the one of number pushed. Needs room. control: of a piece of a smoothed curve,
+ * else NULL.
+ */
 void takt_ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
                     const struct point control[4]);
 
@@ -114,7 +127,9 @@ static inline bool ring_is_read(const struct path_ring *r, uint32_t index)
     return view->state == VIEW_READ && view->index == index;
 }
 
-/* Makes it so: limits, move and curve. Control cycle alone. end: its end on the path, path units. */
+/*
+ * Makes it so: limits, move and curve. Control cycle alone. end: its end on the path, path units.
+ */
 const struct block *takt_ring_read(struct path_ring *r, uint32_t index, uint64_t end);
 /* The next part of that, for a cycle that has no time for all: five at most. */
 void takt_ring_prepare(struct path_ring *r, uint32_t index, uint64_t end);

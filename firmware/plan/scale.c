@@ -5,17 +5,24 @@
 #include "plan/path_unit.h"
 
 /*
- * Rounding changes the second and third differences of setpoints by 2 units, and by two and three times 8 where one so near to
- * an end is put on it (motion/motion.c): with this many units in the least A tau^2 and J tau^3 that is less than
- * 1/14,000 of the acceleration limit, and 1/2048 of the jerk limit.
+ * Rounding changes the second and third differences of setpoints by 2 units, and by two and three
+ * times 8 where one so near to an end is put on it (motion/motion.c): with this many units in the
+ * least A tau^2 and J tau^3 that is less than 1/14,000 of the acceleration limit, and 1/2048 of the
+ * jerk limit.
  */
 #define ACCELERATION_UNITS 262144.0
 #define JERK_UNITS         65536.0
 
-/* The sums of the averages: product of the boxes times the way between trapezoidal reference and setpoint. */
+/*
+ * The sums of the averages: product of the boxes times the way between trapezoidal reference and
+ * setpoint.
+ */
 #define SUM_UNITS 9223372036854775808.0
 
-/* Units of one block at most: with what is ahead of it (path.c) differences of positions stay within 63 bits. */
+/*
+ * Units of one block at most: with what is ahead of it (path.c) differences of positions stay
+ * within 63 bits.
+ */
 #define LENGTH_UNITS 2305843009213693952.0
 
 /* The bits of the linear axes, and of the rotary ones. */
@@ -35,7 +42,9 @@ static double fastest(const struct plan_limits *limits, unsigned axes)
     return maths_sqrt(square) * limits->cycle_s;
 }
 
-/* Units of a scale of 1 in the least A tau^2 and J tau^3, as parts of those that must be in them. */
+/*
+ * Units of a scale of 1 in the least A tau^2 and J tau^3, as parts of those that must be in them.
+ */
 static double least_units(const struct plan_limits *limits, unsigned axes)
 {
     const double t = limits->cycle_s;

@@ -1,22 +1,25 @@
 /*
- * Goal: the averaging window with which a span takes the least time, without running the trapezoidal reference through it.
+ * Goal: the averaging window with which a span takes the least time, without running the
+ * trapezoidal reference through it.
  *
- * A long window lets ramps reach a high acceleration; with a short one the trapezoidal reference comes later to a slow block,
- * leaves it earlier, and waits less between speeding up and slowing down. For some windows the time is predicted, by
- * parts of equal limits laid where the trapezoidal reference feels them. With N the first box, W the whole window, h = (W - 1)/2,
- * c a feed a cycle:
+ * A long window lets ramps reach a high acceleration; with a short one the trapezoidal reference
+ * comes later to a slow block, leaves it earlier, and waits less between speeding up and slowing
+ * down. For some windows the time is predicted, by parts of equal limits laid where the trapezoidal
+ * reference feels them. With N the first box, W the whole window, h = (W - 1)/2, c a feed a cycle:
  *
  *     feed |   ______ c1             into a slower part   h + 2 cycles before it, at that part's feed:  c2 (h + 2)
  *          |         |        ____   out of it            h cycles behind it:                           c2 h
  *          |         |_______|       a = min(A, J N)
  *          +---------+-------+----> trapezoidal reference
  *
- * Feed squared where parts begin is what both ends of the span and all ceilings allow, backwards and then forwards:
- * u = min(c^2, u_next + 2 a L). Where the feed rises and falls again without being kept for W cycles, the peak is lower:
- * W q = l + (p^2 - q^2)/a, l the way at the old peak p, q the new one. A stop is come to W - 1 cycles after the trapezoidal reference.
+ * Feed squared where parts begin is what both ends of the span and all ceilings allow, backwards
+ * and then forwards: u = min(c^2, u_next + 2 a L). Where the feed rises and falls again without
+ * being kept for W cycles, the peak is lower: W q = l + (p^2 - q^2)/a, l the way at the old peak p,
+ * q the new one. A stop is come to W - 1 cycles after the trapezoidal reference.
  *
- * Each window costs one step for each part. Rejected: to lay the pieces of the ceiling themselves for each window (ten
- * times the cost, and no better choice); the window of the fastest block for all (up to 17 % slower).
+ * Each window costs one step for each part. Rejected: to lay the pieces of the ceiling themselves
+ * for each window (ten times the cost, and no better choice); the window of the fastest block for
+ * all (up to 17 % slower).
  */
 #include "plan/span.h"
 
@@ -157,7 +160,10 @@ static double part_begin(const struct trial *t, const struct part *before, const
                                      : maths_max(early, before->end_mm + before->feed * t->behind);
 }
 
-/* Lays the parts for the trapezoidal reference; one that others cover, up to the end or in between, is left out. */
+/*
+ * Lays the parts for the trapezoidal reference; one that others cover, up to the end or in between,
+ * is left out.
+ */
 static void lay_parts(struct trial *t)
 {
     const struct span *s = t->span;
@@ -248,7 +254,10 @@ static void lower_peak(struct walk *w, double window, double peak, double a)
     w->cycles += maths_max(0.0, window - had);
 }
 
-/* Up from the feed at the start of what is laid to its highest, p^2 = (u + u_end)/2 + a L <= c^2, and down again. */
+/*
+ * Up from the feed at the start of what is laid to its highest, p^2 = (u + u_end)/2 + a L <= c^2,
+ * and down again.
+ */
 static void pass_part(struct walk *w, const struct trial *t, unsigned k)
 {
     const struct laid *p = &t->laid[k];
@@ -305,9 +314,10 @@ static double predict(const struct span *s, uint32_t box)
 /* -- the window -- */
 
 /*
- * The longest first box N that can be of use, by a profile of windows w N: with A/J a ramp reaches its full acceleration. A ramp to a
- * feed F that does not, a = J N, takes F/a + w N: least with sqrt(F/wJ). From rest to rest over L it takes twice R + w N, with
- * L = a R (R + w N): least with cbrt(L/2Jw^2).
+ * The longest first box N that can be of use, by a profile of windows w N: with A/J a ramp reaches
+ * its full acceleration. A ramp to a feed F that does not, a = J N, takes F/a + w N: least with
+ * sqrt(F/wJ). From rest to rest over L it takes twice R + w N, with L = a R (R + w N): least with
+ * cbrt(L/2Jw^2).
  */
 static uint32_t longest_box(const struct span *s)
 {
@@ -331,8 +341,9 @@ static uint32_t longest_box(const struct span *s)
 }
 
 /*
- * For one part from rest to rest the longest is the best: seven segments, or four, of the closed form. So it is where the
- * end of the span is out of sight: what is in sight may be a way up to speed alone, on which every short window looks good.
+ * For one part from rest to rest the longest is the best: seven segments, or four, of the closed
+ * form. So it is where the end of the span is out of sight: what is in sight may be a way up to
+ * speed alone, on which every short window looks good.
  */
 static uint32_t best_box(const struct span *s)
 {

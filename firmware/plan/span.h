@@ -21,9 +21,9 @@ bool takt_span_stops(const struct path *path, uint32_t index);
 bool takt_span_lands(const struct path *path, uint32_t index);
 
 /*
- * The window for the span that begins with the motion at index: the one with which the span is predicted to take the
- * least time, as far as it is known; of a span that begins behind the closed blocks its first block is. Feeds count as
- * programmed: the overrides do not change the window.
+ * The window for the span that begins with the motion at index: the one with which the span is
+ * predicted to take the least time, as far as it is known; of a span that begins behind the closed
+ * blocks its first block is. Feeds count as programmed: the overrides do not change the window.
  */
 struct span_window takt_span_window(const struct path *path, const struct ceiling_request *request,
                                     uint32_t index);

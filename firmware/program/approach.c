@@ -20,7 +20,10 @@ void takt_approach_open(struct program *p)
     p->approach.height_mm = p->config.start.at[AXIS_Z];
 }
 
-/* No curve goes further up than this: from its end, or from its centre by the distance of its farther end. */
+/*
+ * No curve goes further up than this: from its end, or from its centre by the distance of its
+ * farther end.
+ */
 static double highest(const struct move *m, const struct point *start)
 {
     enum axis axis[2];

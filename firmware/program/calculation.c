@@ -39,8 +39,9 @@ static enum takt_error divide(double left, double right, double *result)
 }
 
 /*
- * x modulo y for x >= 0, y > 0, exact: subtracts y times falling powers of two. Both the doubling and each
- * difference are exact, and there are at most 2 * 2098 steps (the binary orders of a double).
+ * x modulo y for x >= 0, y > 0, exact: subtracts y times falling powers of two. Both the doubling
+ * and each difference are exact, and there are at most 2 * 2098 steps (the binary orders of a
+ * double).
  */
 static double remainder_of(double x, double y)
 {

@@ -31,7 +31,10 @@ const struct operation_entry *takt_operation_find(const char *text);
 struct function_entry {
     char name[8];
     unsigned char length;
-    /* TAKT_OK or what is wrong with the argument; NULL for ATAN and EXISTS, which are read in their own way. */
+    /*
+     * TAKT_OK or what is wrong with the argument; NULL for ATAN and EXISTS, which are read in their
+     * own way.
+     */
     enum takt_error (*apply)(double x, double *result);
 };
 

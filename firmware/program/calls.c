@@ -76,7 +76,10 @@ static bool restore_modes(struct program *p, const struct program_frame *frame,
            takt_oword_error(p, TAKT_ERROR_PARAMETERS_FULL, o, 0.0);
 }
 
-/* #1 ... that a caller has to find again: up to the last one with any bit set, since -0 is not 0 everywhere. */
+/*
+ * #1 ... that a caller has to find again: up to the last one with any bit set, since -0 is not 0
+ * everywhere.
+ */
 static unsigned count_locals(const double local[PARAMETERS_LOCAL])
 {
     unsigned count = PARAMETERS_LOCAL;

@@ -1,16 +1,18 @@
 /*
- * Subroutines. O... sub, call, return and endsub with their own #1 ... #30 and local names; and numbered programs,
- * a bare O... with M98 and M99, which share them with their callers.
+ * Subroutines. O... sub, call, return and endsub with their own #1 ... #30 and local names; and
+ * numbered programs, a bare O... with M98 and M99, which share them with their callers.
  *
- * A subroutine is noted, with its place, when its first line is passed. One that is called before lies further
- * down: the text is then passed over from the furthest line read so far.
+ * A subroutine is noted, with its place, when its first line is passed. One that is called before
+ * lies further down: the text is then passed over from the furthest line read so far.
  */
 #ifndef TAKT_PROGRAM_CALLS_H
 #define TAKT_PROGRAM_CALLS_H
 
 #include "program/oword.h"
 
-/* Notes the subroutine or numbered program that begins on the current line. False: p->error is set. */
+/*
+ * Notes the subroutine or numbered program that begins on the current line. False: p->error is set.
+ */
 bool takt_calls_note(struct program *p, const struct oword *o);
 
 /* O...: executing goes on into it. O... sub: passed over until it is called. */

@@ -1,11 +1,12 @@
 /*
  * Two ways to tell where an arc's centre is.
  *
- * I J K: the offset of the centre from the start (G91.1) or its coordinates (G90.1). The end need not be exactly
- * on the circle of the start; how far it may be off is what LinuxCNC allows.
+ * I J K: the offset of the centre from the start (G91.1) or its coordinates (G90.1). The end need
+ * not be exactly on the circle of the start; how far it may be off is what LinuxCNC allows.
  *
- * R: the radius; of the two arcs shorter than half a turn the one that turns the right way, or with a negative R
- * the one longer than half a turn. With the chord from start to end of length 2 h and its middle M, the centre is
+ * R: the radius; of the two arcs shorter than half a turn the one that turns the right way, or with
+ * a negative R the one longer than half a turn. With the chord from start to end of length 2 h and
+ * its middle M, the centre is
  *
  *     M + sqrt(R^2 - h^2) n,   n the unit normal of the chord: to its left for G3 and R > 0 or G2 and R < 0
  */
@@ -19,8 +20,10 @@
 #include "program/report.h"
 #include "program/words.h"
 
-/* Difference of the radii at start and end that is always allowed, by the program's units: an end and a centre
- * rounded to 0.01 mm or 0.001 inch. */
+/*
+ * Difference of the radii at start and end that is always allowed, by the program's units: an end
+ * and a centre rounded to 0.01 mm or 0.001 inch.
+ */
 #define OFF_CIRCLE_MAX_MM   (2.0 * 0.01 * 1.41421356237309504880)
 #define OFF_CIRCLE_MAX_INCH (2.0 * 0.001 * 1.41421356237309504880)
 /* A larger one is allowed up to this share of the larger radius ... */

@@ -7,8 +7,8 @@
 #include "program/program.h"
 
 /*
- * For involutes too: the centre from its words, machine coordinates; how far a point may be off the curve; what must
- * hold of the plane and its words. False: p->error is set.
+ * For involutes too: the centre from its words, machine coordinates; how far a point may be off the
+ * curve; what must hold of the plane and its words. False: p->error is set.
  */
 bool takt_circular_centre(struct program *p, enum axis first, enum axis second,
                           double centre_mm[2]);
@@ -16,8 +16,8 @@ double takt_circular_slack_mm(const struct program *p);
 bool takt_circular_check_plane(struct program *p, enum axis first, enum axis second);
 
 /*
- * Of splines too: the machine has the axes of the plane, which is not turned out of them by a rotated system, and no
- * compensation has just ended.
+ * Of splines too: the machine has the axes of the plane, which is not turned out of them by a
+ * rotated system, and no compensation has just ended.
  */
 bool takt_circular_check_axes(struct program *p, enum axis first, enum axis second);
 

@@ -10,8 +10,8 @@
 struct program;
 
 /*
- * What a line asks for is done in this order, whatever the order of its words: the order of execution of
- * RS274/NGC.
+ * What a line asks for is done in this order, whatever the order of its words: the order of
+ * execution of RS274/NGC.
  */
 enum step {
     STEP_SPINDLE_MODE,

@@ -24,9 +24,10 @@ enum comment_kind {
 };
 
 /*
- * What the last comment of the current line is, and its text, ending in zero, without the word that says so. In the texts of
- * DEBUG, PRINT, LOG and ABORT #1 and #<name> are the values of the parameters, with the places that %d (none), %f (four) or
- * %.2f before them ask for; six without. One that is not known is ######.
+ * What the last comment of the current line is, and its text, ending in zero, without the word that
+ * says so. In the texts of DEBUG, PRINT, LOG and ABORT #1 and #<name> are the values of the
+ * parameters, with the places that %d (none), %f (four) or %.2f before them ask for; six without.
+ * One that is not known is ######.
  */
 enum comment_kind takt_comment_read(const struct program *p, char text[COMMENT_TEXT_MAX]);
 

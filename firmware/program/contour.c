@@ -139,7 +139,10 @@ static bool report(struct program *p, enum takt_error error, double value)
     return false;
 }
 
-/* NULL: no room, p->error is set. The queue has been fetched before the profile's first line is read: it lies in its place. */
+/*
+ * NULL: no room, p->error is set. The queue has been fetched before the profile's first line is
+ * read: it lies in its place.
+ */
 static struct profile_segment *add_segment(struct program *p)
 {
     struct profile *profile = &p->turning.profile;
@@ -249,8 +252,9 @@ bool takt_contour_take_line(struct program *p)
 /* -- the cycle -- */
 
 /*
- * A profile that ends aslant leaves no wall where the cycle's levels could end: without one the whole depth would be cut at once.
- * It gets a line to the level at which the cycle begins, as in LinuxCNC 2.10.
+ * A profile that ends aslant leaves no wall where the cycle's levels could end: without one the
+ * whole depth would be cut at once. It gets a line to the level at which the cycle begins, as in
+ * LinuxCNC 2.10.
  */
 static bool close_profile(struct program *p)
 {

@@ -272,8 +272,8 @@ bool takt_coordinates_restore_axis_offset(struct program *p, const struct progra
 }
 
 /*
- * The offset of tool H, or else of the one in the spindle, which H0 names too. An unknown tool other than "no tool" is
- * worth a warning.
+ * The offset of tool H, or else of the one in the spindle, which H0 names too. An unknown tool
+ * other than "no tool" is worth a warning.
  */
 static bool offset_of_tool(struct program *p, const struct program_code *code, struct point *offset)
 {

@@ -3,8 +3,8 @@
  *
  *     machine = T (work + axis offset (G92)) + offset of the coordinate system (G54 ...) + tool offset (G43)
  *
- * in mm and rad; T turns X and Y by the rotation of the coordinate system (G10 L2 R). The machine position is what
- * the interpreter keeps; changing an offset moves nothing.
+ * in mm and rad; T turns X and Y by the rotation of the coordinate system (G10 L2 R). The machine
+ * position is what the interpreter keeps; changing an offset moves nothing.
  */
 #ifndef TAKT_PROGRAM_COORDINATES_H
 #define TAKT_PROGRAM_COORDINATES_H
@@ -21,7 +21,10 @@ double takt_coordinates_work(const struct program *p, enum axis axis);
 void takt_coordinates_work_of(const struct program *p, const struct point *machine,
                               struct point *work);
 
-/* The machine position of work. An axis that is where it is already keeps its position to the last bit. */
+/*
+ * The machine position of work. An axis that is where it is already keeps its position to the last
+ * bit.
+ */
 void takt_coordinates_machine_of(const struct program *p, const struct point *work,
                                  struct point *machine);
 
@@ -52,7 +55,9 @@ void takt_coordinates_end(const struct program *p, struct point *end);
 double takt_coordinates_to_parameter(double value, enum axis axis);
 double takt_coordinates_from_parameter(double value, enum axis axis);
 
-/* Takes the coordinate system and the axis offsets from the parameters, at the start of a program. */
+/*
+ * Takes the coordinate system and the axis offsets from the parameters, at the start of a program.
+ */
 void takt_coordinates_open(struct program *p);
 
 /* G54 ... G59.3; argument: 1 ... 9 */

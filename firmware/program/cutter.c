@@ -14,7 +14,10 @@ static bool is_on(const struct program *p)
     return p->modes.cutter_side != CUTTER_OFF;
 }
 
-/* A contour has been left: the tool is beside the programmed point, so the next move cannot be an arc. */
+/*
+ * A contour has been left: the tool is beside the programmed point, so the next move cannot be an
+ * arc.
+ */
 bool takt_cutter_cancel(struct program *p, const struct program_code *code)
 {
     (void)code;

@@ -1,6 +1,7 @@
 /*
- * Cutter-radius compensation as the program asks for it: G40, G41, G42, G41.1, G42.1, and what may not change while
- * it is on. The path stays the programmed one; each move carries side and radius for the room offset.
+ * Cutter-radius compensation as the program asks for it: G40, G41, G42, G41.1, G42.1, and what may
+ * not change while it is on. The path stays the programmed one; each move carries side and radius
+ * for the room offset.
  */
 #ifndef TAKT_PROGRAM_CUTTER_H
 #define TAKT_PROGRAM_CUTTER_H
@@ -16,7 +17,10 @@ bool takt_cutter_use_diameter(struct program *p, const struct program_code *code
 
 /* May this code act now? False: compensation is on and forbids it, p->error is set. */
 bool takt_cutter_allows(struct program *p, const struct program_code *code);
-/* After a code has acted: false when it has moved the coordinates of a compensated path, p->error is set. */
+/*
+ * After a code has acted: false when it has moved the coordinates of a compensated path, p->error
+ * is set.
+ */
 bool takt_cutter_allows_change(struct program *p, const struct program_code *code,
                                const struct program_modes *before);
 

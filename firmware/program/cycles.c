@@ -14,7 +14,9 @@
 
 #include <string.h>
 
-/* Rapid into a hole ends so far above where it was cut last, without D: 0.010 inch, as in LinuxCNC. */
+/*
+ * Rapid into a hole ends so far above where it was cut last, without D: 0.010 inch, as in LinuxCNC.
+ */
 #define PECK_CLEARANCE_MM 0.254
 
 void takt_cycles_open(struct program *p)
@@ -31,7 +33,10 @@ void takt_cycles_see(struct program *p, const struct program_code *code)
     }
 }
 
-/* A word of a cycle in mm, or what the same cycle had before. False: it has neither, p->error is set. */
+/*
+ * A word of a cycle in mm, or what the same cycle had before. False: it has neither, p->error is
+ * set.
+ */
 static bool keep_word(struct program *p, const struct program_code *code, char letter, double unit,
                       double *kept)
 {
@@ -131,7 +136,10 @@ static void set_axes(struct program *p, struct program_cycle *c)
     c->axis[2] = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - c->axis[0] - c->axis[1]);
 }
 
-/* The holes in the plane: with G90 the words are the one hole, with G91 the step to the first and to each next. */
+/*
+ * The holes in the plane: with G90 the words are the one hole, with G91 the step to the first and
+ * to each next.
+ */
 static void set_holes(const struct program *p, struct program_cycle *c, const struct point *work)
 {
     for (unsigned i = 0; i < 2; i++) {

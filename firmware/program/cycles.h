@@ -1,10 +1,11 @@
 /*
  * Drilling and boring cycles: G73, G74, G81 to G89.
  *
- * Every cycle goes at rapid over the hole and down to R, does what its script in drilling.c says, and ends at the clear
- * height: R with G99, with G98 the height before the first of a row of cycles if that is above R. With L it is done so
- * often, with G91 each time a step further. Its moves are made while they are fetched, so that no number of holes and
- * pecks needs room; the line has been checked as a whole before.
+ * Every cycle goes at rapid over the hole and down to R, does what its script in drilling.c says,
+ * and ends at the clear height: R with G99, with G98 the height before the first of a row of cycles
+ * if that is above R. With L it is done so often, with G91 each time a step further. Its moves are
+ * made while they are fetched, so that no number of holes and pecks needs room; the line has been
+ * checked as a whole before.
  */
 #ifndef TAKT_PROGRAM_CYCLES_H
 #define TAKT_PROGRAM_CYCLES_H

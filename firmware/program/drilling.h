@@ -1,6 +1,6 @@
 /*
- * The moves of a drilling cycle under way, one by one: scripts, a row of which says rapid, feed, wait, spindle or stop, and
- * at which height.
+ * The moves of a drilling cycle under way, one by one: scripts, a row of which says rapid, feed,
+ * wait, spindle or stop, and at which height.
  */
 #ifndef TAKT_PROGRAM_DRILLING_H
 #define TAKT_PROGRAM_DRILLING_H

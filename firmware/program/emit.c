@@ -17,7 +17,8 @@
 #define RPM_MAX 1e6
 
 /*
- * What position-error correction goes by. The part's zero is the machine position of work coordinate 0, without tool:
+ * What position-error correction goes by. The part's zero is the machine position of work
+ * coordinate 0, without tool:
  *
  *     system + T (axis offset)
  */
@@ -99,8 +100,8 @@ static bool moves_rotary_only(const struct program *p, const struct move *m)
 }
 
 /*
- * Inverse time: the move takes 1/F minutes, so feed = length F / 60. One without length gets any feed that is not
- * 0, since nobody runs it.
+ * Inverse time: the move takes 1/F minutes, so feed = length F / 60. One without length gets any
+ * feed that is not 0, since nobody runs it.
  */
 static double inverse_time_feed(const struct program *p, const struct move *m)
 {

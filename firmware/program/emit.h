@@ -17,14 +17,14 @@ void takt_emit_prepare(const struct program *p, enum move_kind kind, const struc
 bool takt_emit_take(struct program *p, struct move *move);
 
 /*
- * Gives a cutting motion from the current position its feed: of F, or where feed_rev_mm is set already, of the
- * spindle. False: p->error is set.
+ * Gives a cutting motion from the current position its feed: of F, or where feed_rev_mm is set
+ * already, of the spindle. False: p->error is set.
  */
 bool takt_emit_set_feed(struct program *p, struct move *m);
 
 /*
- * Gives a cutting motion its feed and queues it when it stays inside the travel; the position is then its end.
- * False: p->error is set.
+ * Gives a cutting motion its feed and queues it when it stays inside the travel; the position is
+ * then its end. False: p->error is set.
  */
 bool takt_emit_motion(struct program *p, struct move *m);
 

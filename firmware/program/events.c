@@ -100,7 +100,10 @@ bool takt_events_set_spindle_mode(struct program *p, const struct program_code *
     return true;
 }
 
-/* The spindle hears of a new speed at once, unless a word of this line turns it anyway or it stands. */
+/*
+ * The spindle hears of a new speed at once, unless a word of this line turns it anyway or it
+ * stands.
+ */
 bool takt_events_set_speed(struct program *p, const struct program_code *code)
 {
     const double speed = words_value(p, 's');

@@ -42,7 +42,10 @@ static struct program_span span_from(const struct program *p, unsigned begin)
     return (struct program_span){(uint16_t)begin, p->lexer.at};
 }
 
-/* Operators whose right sides have not been read yet; the last binds tightest. LEVEL_END never waits. */
+/*
+ * Operators whose right sides have not been read yet; the last binds tightest. LEVEL_END never
+ * waits.
+ */
 struct pending {
     unsigned count;
     double left[LEVEL_COUNT - 1];
@@ -93,8 +96,8 @@ static void add_operator(const struct program *p, struct pending *pending,
 }
 
 /*
- * Operators wait until one that binds no tighter follows. Levels rise from the first to the last, so there are never more
- * of them than levels.
+ * Operators wait until one that binds no tighter follows. Levels rise from the first to the last,
+ * so there are never more of them than levels.
  */
 static bool read_bracket(struct program *p, double *value)
 {
@@ -225,7 +228,10 @@ static bool read_atan(struct program *p, double *value)
     return true;
 }
 
-/* EXISTS[#<name>], from its bracket on: 1 when it has been set, or when there is a parameter of this number. */
+/*
+ * EXISTS[#<name>], from its bracket on: 1 when it has been set, or when there is a parameter of
+ * this number.
+ */
 static bool read_exists(struct program *p, double *value)
 {
     struct program_reference reference = {0};

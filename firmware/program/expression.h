@@ -1,5 +1,6 @@
 /*
- * Values: numbers, parameters, functions and expressions in brackets, read and worked out in one pass.
+ * Values: numbers, parameters, functions and expressions in brackets, read and worked out in one
+ * pass.
  *
  *     value      = { '+' | '-' } ( number | '[' expression ']' | function | reference )
  *     expression = value { operator value }
@@ -23,7 +24,8 @@ bool takt_expression_find_named(const struct program *p, const char *name, size_
                                 double *value);
 
 /*
- * The nearest integer to value when it is within 0.0001 of it, as for all values that must be whole.
+ * The nearest integer to value when it is within 0.0001 of it, as for all values that must be
+ * whole.
  */
 bool takt_expression_whole(double value, double *whole);
 

@@ -125,7 +125,10 @@ static bool read_value(struct program *p, const struct oword *o, double *value)
     return takt_expression_read(p, value) && takt_oword_finish(p, o);
 }
 
-/* A branch begins when its condition holds. One that cannot be read does not begin, nor do those behind it. */
+/*
+ * A branch begins when its condition holds. One that cannot be read does not begin, nor do those
+ * behind it.
+ */
 static bool try_branch(struct program *p, const struct oword *o, struct program_block *b)
 {
     double value = 0.0;
@@ -310,8 +313,8 @@ static bool leave_round(struct program *p, const struct oword *o)
 }
 
 /*
- * O<place> GOTO [line] [blocks]: what a translator makes of a jump. The line begins at this place of the text, inside so many
- * blocks of this call.
+ * O<place> GOTO [line] [blocks]: what a translator makes of a jump. The line begins at this place
+ * of the text, inside so many blocks of this call.
  */
 static bool take_goto(struct program *p, const struct oword *o)
 {
@@ -392,7 +395,10 @@ static bool pass_block(struct program *p, const struct oword *o)
     return !opens_block(o->kind) || takt_oword_error(p, TAKT_ERROR_OWORD_LABEL_USED, o, b->line);
 }
 
-/* What stands in lines that are passed over need not be right; a label may be one that cannot be worked out. */
+/*
+ * What stands in lines that are passed over need not be right; a label may be one that cannot be
+ * worked out.
+ */
 static bool pass_over(struct program *p)
 {
     struct oword o;
@@ -430,8 +436,9 @@ static bool stop_reading(struct program *p)
 }
 
 /*
- * Behind a jump forward lines are new, too, though not all before them has been read. A line that goes on (lexer.c) begins
- * one byte behind the last; passing over an empty line, which is no more, leaves nothing out.
+ * Behind a jump forward lines are new, too, though not all before them has been read. A line that
+ * goes on (lexer.c) begins one byte behind the last; passing over an empty line, which is no more,
+ * leaves nothing out.
  */
 static bool is_new(struct program_flow *f, uint64_t offset, const struct program_place *behind)
 {

@@ -14,7 +14,9 @@
 /* Fewer than the room geometry can do, so that what compensation makes of it can be run too. */
 #define TURNS_MAX (0.5 * CURVE_UNROLLED_MAX_RAD / MATHS_TWO_PI)
 
-/* Ends whose distances from the centre differ by less, or by less than this share, are equally far. */
+/*
+ * Ends whose distances from the centre differ by less, or by less than this share, are equally far.
+ */
 #define CLOSED_MM    1e-6
 #define CLOSED_RATIO 1e-9
 

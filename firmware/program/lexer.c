@@ -100,8 +100,8 @@ static void begin_comment(struct program_lexer *l, struct scan *s, char c)
 }
 
 /*
- * What a comment says may be an order. It is kept behind the text, backwards from the end of its room: with the character that
- * begins it they are never longer than the line.
+ * What a comment says may be an order. It is kept behind the text, backwards from the end of its
+ * room: with the character that begins it they are never longer than the line.
  *
  *     text ... 0            ... tnemmoc
  */

@@ -1,12 +1,16 @@
 /*
- * Lines: from the source's bytes to the current line's characters, and where in the text they stood.
+ * Lines: from the source's bytes to the current line's characters, and where in the text they
+ * stood.
  */
 #ifndef TAKT_PROGRAM_LEXER_H
 #define TAKT_PROGRAM_LEXER_H
 
 #include "program/program.h"
 
-/* A line that begins with it goes on with the one before, whose number it has: a translator makes several lines of one. The first line has none to go on with: there it is unknown. */
+/*
+ * A line that begins with it goes on with the one before, whose number it has: a translator makes
+ * several lines of one. The first line has none to go on with: there it is unknown.
+ */
 #define LEXER_GOES_ON 0x1f
 
 enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };
@@ -17,8 +21,8 @@ void takt_lexer_open(struct program_lexer *l, const struct source *source);
 bool takt_lexer_can_go_on(struct program_lexer *l);
 
 /*
- * Reads the next line whole, whatever its length. LEXER_ERROR: *error says what is wrong with it; the one after it
- * can be read. LEXER_UNREADABLE: the source fails.
+ * Reads the next line whole, whatever its length. LEXER_ERROR: *error says what is wrong with it;
+ * the one after it can be read. LEXER_UNREADABLE: the source fails.
  */
 enum lexer_result takt_lexer_next_line(struct program_lexer *l, struct diagnostic *error);
 

@@ -10,7 +10,10 @@
 #define SECONDS_PER_MINUTE 60.0
 #define RAD_PER_DEGREE     (MATHS_PI / 180.0)
 
-/* Offsets are in the parameters, from where they are loaded; compensation ends with the text it was switched on in. */
+/*
+ * Offsets are in the parameters, from where they are loaded; compensation ends with the text it was
+ * switched on in.
+ */
 static void go_on(struct program *p)
 {
     struct program_modes *m = &p->modes;

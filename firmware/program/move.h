@@ -1,6 +1,6 @@
 /*
- * A canonical move: what a part program comes to once modes, offsets, units and expressions are gone.
- * Machine coordinates, mm and rad, mm/s. The one thing that leaves this room.
+ * A canonical move: what a part program comes to once modes, offsets, units and expressions are
+ * gone. Machine coordinates, mm and rad, mm/s. The one thing that leaves this room.
  */
 #ifndef TAKT_PROGRAM_MOVE_H
 #define TAKT_PROGRAM_MOVE_H
@@ -43,7 +43,10 @@ enum move_path { PATH_EXACT /* G61 */, PATH_EXACT_STOP /* G61.1 */, PATH_BLEND /
 
 enum spindle_direction { SPINDLE_OFF, SPINDLE_CW, SPINDLE_CCW };
 
-/* Which side of the programmed path the tool is on, looking along it, the plane seen from its third axis. */
+/*
+ * Which side of the programmed path the tool is on, looking along it, the plane seen from its third
+ * axis.
+ */
 enum cutter_side { CUTTER_OFF, CUTTER_LEFT /* G41 */, CUTTER_RIGHT /* G42 */ };
 
 /* Highest orientation of a lathe tool. */
@@ -65,20 +68,23 @@ enum input_wait { INPUT_READ, INPUT_RISE, INPUT_FALL, INPUT_HIGH, INPUT_LOW };
 #define OVERRIDE_HOLD     8U /* M53 P1: the operator may hold the feed */
 
 /*
- * What a move of one kind alone has lies in one place, in unions: numbers only, so that reading one that another kind has
- * written is no more than a wrong number.
+ * What a move of one kind alone has lies in one place, in unions: numbers only, so that reading one
+ * that another kind has written is no more than a wrong number.
  */
 struct move {
     enum move_kind kind;
     enum move_path path;
     enum plane plane; /* arcs, involutes and whatever is compensated */
-    /* Not CUTTER_OFF: end and centre are the programmed ones, the room offset moves them by the radius */
+    /*
+     * Not CUTTER_OFF: end and centre are the programmed ones, the room offset moves them by the
+     * radius
+     */
     enum cutter_side cutter_side;
     uint32_t line;
     /* motion: MOVE_RAPID to MOVE_PROBE */
     struct point end;
-    double
-        feed_mm_s; /* along the path; 0 for a rapid: as fast as the axes allow. rad/s when only A B C move */
+    /* along the path; 0 for a rapid: as fast as the axes allow. rad/s when only A B C move */
+    double feed_mm_s;
     double feed_rev_mm; /* not 0: the feed follows the spindle, so much (mm, or rad) per revolution;
                            feed_mm_s is what that comes to at the commanded speed */
     double tolerance_mm; /* PATH_BLEND: largest distance from the programmed path; 0: exact */
@@ -90,7 +96,9 @@ struct move {
     /* what position-error correction goes by */
     float work_mm[AXIS_LINEAR_COUNT];     /* zero of the part, machine coordinates */
     float overhang_mm[AXIS_LINEAR_COUNT]; /* tool offset */
-    /* from here on, beside kind and line, is all that what happens in between has: MOVE_EVENT_BYTES */
+    /*
+     * from here on, beside kind and line, is all that what happens in between has: MOVE_EVENT_BYTES
+     */
     union {
         struct {
             double centre_mm[2];   /* arcs, and the base circle of involutes: absolute, first and

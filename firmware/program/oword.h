@@ -35,7 +35,10 @@ struct oword {
     uint16_t column;
 };
 
-/* True when the line is an O-word, after an N and its number perhaps; the lexer is then behind the O. */
+/*
+ * True when the line is an O-word, after an N and its number perhaps; the lexer is then behind the
+ * O.
+ */
 bool takt_oword_begins(struct program *p);
 
 /* Reads label and keyword. False: p->error is set. */
@@ -44,7 +47,9 @@ bool takt_oword_read(struct program *p, struct oword *o);
 /* Nothing but what has been read may stand on an O-word's line. */
 bool takt_oword_finish(struct program *p, const struct oword *o);
 
-/* The label stays for as long as a block or a subroutine has it. False: no room, p->error is set. */
+/*
+ * The label stays for as long as a block or a subroutine has it. False: no room, p->error is set.
+ */
 bool takt_oword_keep(struct program *p, struct oword *o);
 
 static inline bool oword_same_label(const struct program_label *a, const struct program_label *b)

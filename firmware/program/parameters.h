@@ -1,9 +1,10 @@
 /*
  * Numbered parameters #1 ... #PARAMETER_NUMBER_MAX. One that was never set is 0.
  *
- * A sparse store of fixed size: #1 ... #30 are an array, the rest is a list sorted by number, so looking one up
- * takes about ten comparisons and listing them goes in order. The caller owns it; it outlives a program (work
- * offsets, reference positions). Values are as part programs see them: mm and degrees for offsets.
+ * A sparse store of fixed size: #1 ... #30 are an array, the rest is a list sorted by number, so
+ * looking one up takes about ten comparisons and listing them goes in order. The caller owns it; it
+ * outlives a program (work offsets, reference positions). Values are as part programs see them: mm
+ * and degrees for offsets.
  */
 #ifndef TAKT_PROGRAM_PARAMETERS_H
 #define TAKT_PROGRAM_PARAMETERS_H
@@ -50,7 +51,8 @@ double takt_parameters_get(const struct parameters *p, unsigned number);
 bool takt_parameters_set(struct parameters *p, unsigned number, double value);
 
 /*
- * The next parameter after *number that is not 0, for saving: true, *number and *value; start with *number = 0.
+ * The next parameter after *number that is not 0, for saving: true, *number and *value; start with
+ * *number = 0.
  */
 bool takt_parameters_next(const struct parameters *p, unsigned *number, double *value);
 

@@ -1,8 +1,9 @@
 /*
  * Probing: G38.2 to G38.5.
  *
- * The interpreter makes one move to the programmed end and sets the parameters as if it had ended there without contact.
- * Who runs the program says what became of it by takt_program_answer (program.h).
+ * The interpreter makes one move to the programmed end and sets the parameters as if it had ended
+ * there without contact. Who runs the program says what became of it by takt_program_answer
+ * (program.h).
  */
 #ifndef TAKT_PROGRAM_PROBE_H
 #define TAKT_PROGRAM_PROBE_H

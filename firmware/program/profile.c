@@ -1,4 +1,6 @@
-/* The profile of a turning cycle: its segments, their offsets and corners, and what is asked of it. */
+/*
+ * The profile of a turning cycle: its segments, their offsets and corners, and what is asked of it.
+ */
 #include "program/profile.h"
 
 #include "base/assert.h"
@@ -43,7 +45,8 @@ double takt_profile_radius(const struct profile_segment *s)
 /* -- offsets -- */
 
 /*
- * The centre of an arc as its decimals have it, moved along the chord w until both ends are as far from it:
+ * The centre of an arc as its decimals have it, moved along the chord w until both ends are as far
+ * from it:
  *
  *     c + w (|e - c|^2 - |s - c|^2) / 2 |w|^2
  *
@@ -92,7 +95,10 @@ static struct profile_point nearer(struct profile_point near, struct profile_poi
     return takt_profile_distance(&near, &a) <= takt_profile_distance(&near, &b) ? a : b;
 }
 
-/* The line through s, and the circle of c: from the foot of its centre on the line, h along it, h^2 = r^2 - distance^2. */
+/*
+ * The line through s, and the circle of c: from the foot of its centre on the line, h along it, h^2
+ * = r^2 - distance^2.
+ */
 static struct profile_point meet_circle(const struct profile_segment *s,
                                         const struct profile_segment *c, struct profile_point near)
 {
@@ -108,7 +114,10 @@ static struct profile_point meet_circle(const struct profile_segment *s,
     return nearer(near, along(foot, h, unit), along(foot, -h, unit));
 }
 
-/* Two circles at the distance c: x = (c^2 + a^2 - b^2) / 2 c from the first centre towards the second, h aside. */
+/*
+ * Two circles at the distance c: x = (c^2 + a^2 - b^2) / 2 c from the first centre towards the
+ * second, h aside.
+ */
 static struct profile_point meet_circles(const struct profile_segment *first,
                                          const struct profile_segment *second,
                                          struct profile_point near)
@@ -130,7 +139,9 @@ static struct profile_point meet_circles(const struct profile_segment *first,
     return nearer(near, along(foot, h, left), along(foot, -h, left));
 }
 
-/* a + f way with cross(way of b, a + f way - start of b) = 0; parallel lines meet where they are. */
+/*
+ * a + f way with cross(way of b, a + f way - start of b) = 0; parallel lines meet where they are.
+ */
 static struct profile_point meet_lines(const struct profile_segment *a,
                                        const struct profile_segment *b)
 {
@@ -171,8 +182,8 @@ void takt_profile_join(struct profile_segment *a, struct profile_segment *b)
 /* -- corners -- */
 
 /*
- * The centre of a fillet is where the neighbours meet, each offset to its side by the radius; it touches them at their feet.
- * A chamfer has the same ends.
+ * The centre of a fillet is where the neighbours meet, each offset to its side by the radius; it
+ * touches them at their feet. A chamfer has the same ends.
  */
 static bool round_corner(struct profile_segment *before, struct profile_segment *s,
                          struct profile_segment *behind)
@@ -230,7 +241,10 @@ bool takt_profile_round(struct profile *p)
     return kept > 1;
 }
 
-/* The stock is to the right of the profile where it goes on from the way to it, seen from there, to its end. */
+/*
+ * The stock is to the right of the profile where it goes on from the way to it, seen from there, to
+ * its end.
+ */
 static double signed_distance(const struct profile *p, double distance_mm)
 {
     const struct profile_segment *way = &p->segment[0];

@@ -1,8 +1,9 @@
 /*
  * The profile of a turned part, for G70 to G72: a chain of lines and arcs in a plane.
  *
- * Coordinates are u along the part and v across it, as turning.c chooses them: the profile goes towards falling u and, from its
- * beginning to its end, towards rising v; the stock lies above it, to the right of its way.
+ * Coordinates are u along the part and v across it, as turning.c chooses them: the profile goes
+ * towards falling u and, from its beginning to its end, towards rising v; the stock lies above it,
+ * to the right of its way.
  */
 #ifndef TAKT_PROGRAM_PROFILE_H
 #define TAKT_PROGRAM_PROFILE_H
@@ -59,12 +60,16 @@ bool takt_profile_round(struct profile *p);
 bool takt_profile_falls(const struct profile *p, unsigned first);
 
 /*
- * The profile without its first segment, distance_mm to the right, to *path; outer corners become arcs, what the distance
- * swallows is left out. Its first segment becomes the way to it. False: nothing remains, or too much.
+ * The profile without its first segment, distance_mm to the right, to *path; outer corners become
+ * arcs, what the distance swallows is left out. Its first segment becomes the way to it. False:
+ * nothing remains, or too much.
  */
 bool takt_profile_offset(const struct profile *p, double distance_mm, struct profile_path *path);
 
-/* Where a segment, which must not turn back in v, is at the height v; the end of u that comes first. False: nowhere. */
+/*
+ * Where a segment, which must not turn back in v, is at the height v; the end of u that comes
+ * first. False: nowhere.
+ */
 bool takt_profile_cross(const struct profile_segment *s, double v, double *u);
 
 #endif

@@ -1,4 +1,6 @@
-/* The profile of a turning cycle in the frame of its cuts: facing is roughing turned by a quarter. */
+/*
+ * The profile of a turning cycle in the frame of its cuts: facing is roughing turned by a quarter.
+ */
 #include "base/assert.h"
 #include "program/profile.h"
 

@@ -4,7 +4,10 @@
 
 #include "program/profile.h"
 
-/* Ends of offset segments that are this far from each other in u need an arc between them; nearer ones are lengthened. */
+/*
+ * Ends of offset segments that are this far from each other in u need an arc between them; nearer
+ * ones are lengthened.
+ */
 #define GAP_MM 1e-2
 
 /* Of an arc. */
@@ -20,7 +23,10 @@ struct profile_point takt_profile_meet(const struct profile_segment *a,
 /* Lengthens or shortens two segments so that the second begins where the first ends. */
 void takt_profile_join(struct profile_segment *a, struct profile_segment *b);
 
-/* takt_profile_offset of a profile whose stock lies above it, by d > 0; the way to it is the caller's. */
+/*
+ * takt_profile_offset of a profile whose stock lies above it, by d > 0; the way to it is the
+ * caller's.
+ */
 bool takt_profile_offset_up(const struct profile *p, double d, struct profile_path *path);
 
 #endif

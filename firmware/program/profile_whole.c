@@ -1,8 +1,9 @@
 /*
  * The offset of a profile as a whole.
  *
- * The profile falls in u alone, so what is nearer to it than d reaches up to a function of u: the highest of the offset segments
- * and of the circles of radius d round all corners. That is walked along, towards falling u:
+ * The profile falls in u alone, so what is nearer to it than d reaches up to a function of u: the
+ * highest of the offset segments and of the circles of radius d round all corners. That is walked
+ * along, towards falling u:
  *
  *           ___                     a circle round each corner, an offset line or arc for each segment;
  *       ___/   \  <-- from here     walls are the jumps from one to the next
@@ -20,7 +21,10 @@ struct over {
     bool corner; /* a circle round a corner */
 };
 
-/* Segments have odd numbers, corners, beginning and end among them, even ones. Made when they are asked for. */
+/*
+ * Segments have odd numbers, corners, beginning and end among them, even ones. Made when they are
+ * asked for.
+ */
 static unsigned overs(const struct profile *p)
 {
     TAKT_ASSERT(p->count > 0 && p->count <= PROFILE_PATH_MAX);
@@ -148,8 +152,8 @@ static void add_wall(struct profile_path *path, const struct profile_point *from
 }
 
 /*
- * Arcs round corners that hardly open are left out, their neighbours lengthened. That leads outside where they touch both
- * neighbours, and would cut where another curve ends them.
+ * Arcs round corners that hardly open are left out, their neighbours lengthened. That leads outside
+ * where they touch both neighbours, and would cut where another curve ends them.
  */
 static bool is_gap(const struct profile *p, double d, const struct over *o)
 {

@@ -82,7 +82,9 @@ static bool run_line(struct program *p)
     return false;
 }
 
-/* The last line, unless a subroutine was looked for in vain: then the text goes on behind the call. */
+/*
+ * The last line, unless a subroutine was looked for in vain: then the text goes on behind the call.
+ */
 static bool end_text(struct program *p)
 {
     const bool searching = p->flow.skip == SKIP_TO_SUB;

@@ -3,8 +3,8 @@
  *
  *     source (text) -> lexer -> expressions -> block of words -> modal state -> moves
  *
- * The caller owns struct program, the source and everything the configuration points to. Nothing is kept of the
- * text but the current line.
+ * The caller owns struct program, the source and everything the configuration points to. Nothing is
+ * kept of the text but the current line.
  */
 #ifndef TAKT_PROGRAM_PROGRAM_H
 #define TAKT_PROGRAM_PROGRAM_H
@@ -39,8 +39,8 @@ struct program_config {
     bool waits;         /* PROGRAM_WAIT until takt_program_answer; else no contact, input 0 */
     bool sharp_corners; /* for the room offset: outer corners are not rounded */
     /*
-     * NULL, or hears of every line that is executed but O-words, before anything else of it: its comment, if it has one, is that
-     * of p->lexer. It changes nothing of p.
+     * NULL, or hears of every line that is executed but O-words, before anything else of it: its
+     * comment, if it has one, is that of p->lexer. It changes nothing of p.
      */
     void (*say)(void *listener, const struct program *p);
     void *listener;
@@ -75,35 +75,41 @@ void takt_program_open(struct program *p, const struct program_config *config,
                        const struct source *source);
 
 /*
- * The next canonical move into *move: PROGRAM_MOVE. After M2, M30 or the end of the text one MOVE_END comes, then
- * PROGRAM_END for ever. PROGRAM_ERROR: *diagnostic says what and where; reading may go on with the next line
- * (for `takt check`; modes are then as before the faulty line).
+ * The next canonical move into *move: PROGRAM_MOVE. After M2, M30 or the end of the text one
+ * MOVE_END comes, then PROGRAM_END for ever. PROGRAM_ERROR: *diagnostic says what and where;
+ * reading may go on with the next line (for `takt check`; modes are then as before the faulty
+ * line).
  *
- * What follows a MOVE_PROBE or a MOVE_INPUT may depend on what becomes of it. With config.waits PROGRAM_WAIT comes
- * then, again and again, until takt_program_answer; without, the program goes on as if the probing move had ended where it
- * is programmed to, without contact, and the input were 0.
+ * What follows a MOVE_PROBE or a MOVE_INPUT may depend on what becomes of it. With config.waits
+ * PROGRAM_WAIT comes then, again and again, until takt_program_answer; without, the program goes on
+ * as if the probing move had ended where it is programmed to, without contact, and the input were
+ * 0.
  */
 enum program_result takt_program_next(struct program *p, struct move *move,
                                       struct diagnostic *diagnostic);
 
-/* After the caller has run a MOVE_PROBE or a MOVE_INPUT, before the next move is asked for. Else it does nothing. */
+/*
+ * After the caller has run a MOVE_PROBE or a MOVE_INPUT, before the next move is asked for. Else it
+ * does nothing.
+ */
 void takt_program_answer(struct program *p, const struct program_answer *answer);
 
 /*
- * The tool is at *at, not where the program has left it: after a contour without a move that leaves it. What the line being
- * read still moves comes first. Before more is asked for.
+ * The tool is at *at, not where the program has left it: after a contour without a move that leaves
+ * it. What the line being read still moves comes first. Before more is asked for.
  */
 void takt_program_settle(struct program *p, const struct point *at);
 
 /*
- * What the lines read so far leave for the next, also for another text that goes on with it, but for cutter
- * compensation. Valid as long as p.
+ * What the lines read so far leave for the next, also for another text that goes on with it, but
+ * for cutter compensation. Valid as long as p.
  */
 const struct program_modes *takt_program_get_modes(const struct program *p);
 
 /*
- * Warnings since the last call (words read and ignored, H of an unknown tool): true and *diagnostic while there
- * are any. At most PROGRAM_WARNINGS_MAX are kept between calls; further ones are dropped.
+ * Warnings since the last call (words read and ignored, H of an unknown tool): true and *diagnostic
+ * while there are any. At most PROGRAM_WARNINGS_MAX are kept between calls; further ones are
+ * dropped.
  */
 bool takt_program_warning(struct program *p, struct diagnostic *diagnostic);
 

@@ -1,6 +1,7 @@
 /*
- * Every fixed size of the interpreter; a build may have others of those that can be defined before. struct program and
- * struct parameters together stay below PROGRAM_MEMORY_MAX bytes (checked in program.c).
+ * Every fixed size of the interpreter; a build may have others of those that can be defined before.
+ * struct program and struct parameters together stay below PROGRAM_MEMORY_MAX bytes (checked in
+ * program.c).
  */
 #ifndef TAKT_PROGRAM_LIMITS_H
 #define TAKT_PROGRAM_LIMITS_H
@@ -32,7 +33,10 @@
 #define PROGRAM_WARNINGS_MAX 4
 /* '#... = ...' on one line. */
 #define PROGRAM_ASSIGNMENTS_MAX 16
-/* Parameters the codes of one line set: G28.1 six, G92.1 and G38 seven, M66, a coordinate system and M2 one each. */
+/*
+ * Parameters the codes of one line set: G28.1 six, G92.1 and G38 seven, M66, a coordinate system
+ * and M2 one each.
+ */
 #define PROGRAM_STORES_MAX 23
 /* Values inside values: brackets, functions, parameters of parameters. Bounds the recursion. */
 #define PROGRAM_NESTING_MAX 16
@@ -59,13 +63,16 @@
 #ifndef PROGRAM_SUBS_MAX
 #define PROGRAM_SUBS_MAX 48
 #endif
-/* Characters of all names in use, of parameters and O-words, each with one more. Here: as many as they can be, of 31 each. */
+/*
+ * Characters of all names in use, of parameters and O-words, each with one more. Here: as many as
+ * they can be, of 31 each.
+ */
 #ifndef PROGRAM_TEXT_MAX
 #define PROGRAM_TEXT_MAX ((PROGRAM_NAMES_MAX + PROGRAM_SUBS_MAX + PROGRAM_BLOCKS_MAX + 1) * 32)
 #endif
 /*
- * Numbers that calls keep for their ends: of #1 ... #30 those up to the last that is not 0, and what M70 and M73 save. Here: as
- * many as they can be.
+ * Numbers that calls keep for their ends: of #1 ... #30 those up to the last that is not 0, and
+ * what M70 and M73 save. Here: as many as they can be.
  */
 #ifndef PROGRAM_KEPT_MAX
 #define PROGRAM_KEPT_MAX                                                                           \
@@ -73,7 +80,10 @@
 #endif
 /* Largest number of an O-word. */
 #define PROGRAM_LABEL_MAX 99999999
-/* Lines read again without a move in between that takes time, until the program is taken to run in a circle. Fuzzing has less time. */
+/*
+ * Lines read again without a move in between that takes time, until the program is taken to run in
+ * a circle. Fuzzing has less time.
+ */
 #ifndef PROGRAM_CIRCLE_LINES_MAX
 #define PROGRAM_CIRCLE_LINES_MAX 1000000
 #endif

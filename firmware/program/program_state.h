@@ -1,5 +1,6 @@
 /*
- * What struct program consists of. Callers own the memory and touch nothing in it; included by program.h alone.
+ * What struct program consists of. Callers own the memory and touch nothing in it; included by
+ * program.h alone.
  */
 #ifndef TAKT_PROGRAM_STATE_H
 #define TAKT_PROGRAM_STATE_H
@@ -60,8 +61,8 @@ struct program_words {
 };
 
 /*
- * Named parameters, and the texts of all names, those of O-words too. Parameters that begin with '_' are global, others
- * belong to the call they were set in.
+ * Named parameters, and the texts of all names, those of O-words too. Parameters that begin with
+ * '_' are global, others belong to the call they were set in.
  */
 struct program_names {
     uint16_t count;
@@ -140,7 +141,10 @@ struct program_place {
     uint32_t line;
 };
 
-/* What names an O-word: a number, or PROGRAM_LABEL_NAME and the place of a name in struct program_names. */
+/*
+ * What names an O-word: a number, or PROGRAM_LABEL_NAME and the place of a name in struct
+ * program_names.
+ */
 struct program_label {
     uint32_t id;
 };
@@ -273,8 +277,9 @@ struct program_contour {
 };
 
 /*
- * A drilling cycle, G76, a profile or a spline under way: its moves are made one by one as they are fetched. The line it is on has been
- * checked and done; lengths are in mm, positions work coordinates.
+ * A drilling cycle, G76, a profile or a spline under way: its moves are made one by one as they are
+ * fetched. The line it is on has been checked and done; lengths are in mm, positions work
+ * coordinates.
  */
 struct program_cycle {
     const struct program_code *code; /* NULL: none */

@@ -6,7 +6,10 @@
 
 #include "program/program.h"
 
-/* Sets p->error about a piece of the line, named in capitals. Returns false, for its caller to return. */
+/*
+ * Sets p->error about a piece of the line, named in capitals. Returns false, for its caller to
+ * return.
+ */
 bool takt_report_error(struct program *p, enum takt_error code, struct program_span span,
                        double value);
 

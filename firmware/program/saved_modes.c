@@ -9,8 +9,8 @@
 #include <string.h>
 
 /*
- * All that later words depend on, but not where the machine is, the work offsets themselves, and which motion
- * goes on without its code.
+ * All that later words depend on, but not where the machine is, the work offsets themselves, and
+ * which motion goes on without its code.
  */
 static void save(const struct program_modes *m, struct program_saved *s)
 {

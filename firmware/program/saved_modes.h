@@ -6,12 +6,16 @@
 
 #include "program/program.h"
 
-/* M70 saves, M71 forgets, M72 brings back, M73 saves and brings back when the call ends; argument: 0 ... 3. */
+/*
+ * M70 saves, M71 forgets, M72 brings back, M73 saves and brings back when the call ends; argument:
+ * 0 ... 3.
+ */
 bool takt_saved_modes_run_code(struct program *p, const struct program_code *code);
 
 /*
- * Brings the modes that a call has saved back, with a move for the spindle and one for the coolant if they change. False:
- * nothing is changed, because a compensated contour is under way that could not go on.
+ * Brings the modes that a call has saved back, with a move for the spindle and one for the coolant
+ * if they change. False: nothing is changed, because a compensated contour is under way that could
+ * not go on.
  */
 bool takt_saved_modes_restore(struct program *p, const struct program_frame *frame);
 

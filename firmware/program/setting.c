@@ -81,7 +81,8 @@ static bool set_system(struct program *p, enum step step, unsigned system)
 }
 
 /*
- * The offset with which the current position gets the coordinates w of the words. With those it has now, u, that is
+ * The offset with which the current position gets the coordinates w of the words. With those it has
+ * now, u, that is
  *
  *     new offset = old offset + T (u - w)
  *
@@ -151,7 +152,10 @@ static void set_offsets(const struct program *p, struct tool *tool)
     }
 }
 
-/* Seen along the axes of the system, the offset of an axis with a word is what the position exceeds the word by. */
+/*
+ * Seen along the axes of the system, the offset of an axis with a word is what the position exceeds
+ * the word by.
+ */
 static void set_offsets_by_position(const struct program *p, unsigned system, bool axis_offset,
                                     struct tool *tool)
 {
@@ -219,7 +223,10 @@ static bool run_tool(struct program *p, const struct program_code *code, enum wh
     return true;
 }
 
-/* What a tool has cut since it was new, for the wear of the position correction: I whole mm, J whole s, else 0. */
+/*
+ * What a tool has cut since it was new, for the wear of the position correction: I whole mm, J
+ * whole s, else 0.
+ */
 static bool run_wear(struct program *p, const struct program_code *code)
 {
     uint32_t number, length_mm = 0, time_s = 0;

@@ -1,5 +1,6 @@
 /*
- * Where the text of a program comes from: a file, a buffer, a stream. Only the current line is ever kept.
+ * Where the text of a program comes from: a file, a buffer, a stream. Only the current line is ever
+ * kept.
  */
 #ifndef TAKT_PROGRAM_SOURCE_H
 #define TAKT_PROGRAM_SOURCE_H
@@ -14,8 +15,9 @@
 
 struct source {
     /*
-     * Up to size bytes into buffer; returns how many (>= 1), SOURCE_END, SOURCE_ERROR or SOURCE_LATER. Whoever may say
-     * SOURCE_LATER hands out whole lines, in any pieces: between two lines the answer is taken, within one it is an error.
+     * Up to size bytes into buffer; returns how many (>= 1), SOURCE_END, SOURCE_ERROR or
+     * SOURCE_LATER. Whoever may say SOURCE_LATER hands out whole lines, in any pieces: between two
+     * lines the answer is taken, within one it is an error.
      */
     long (*read)(void *context, char *buffer, size_t size);
     /* Next read starts at offset bytes from the beginning. NULL for a stream. False: cannot. */

@@ -14,7 +14,10 @@
 /* Order without L or P. */
 #define ORDER_DEFAULT 3U
 
-/* The first control point of G6.2 is where the tool is: off by no more than rounded coordinates are. */
+/*
+ * The first control point of G6.2 is where the tool is: off by no more than rounded coordinates
+ * are.
+ */
 #define START_MM 0.01
 
 bool takt_spline_allows(struct program *p, const struct program_code *code)
@@ -61,7 +64,10 @@ static void point_of_words(struct program *p, double at_mm[2])
     }
 }
 
-/* The next control point of a curve with even knots, open at its ends: 0 as often as the order, then 1, 2, ... */
+/*
+ * The next control point of a curve with even knots, open at its ends: 0 as often as the order,
+ * then 1, 2, ...
+ */
 static void add_even(struct program_spline *s, const double at_mm[2], double weight)
 {
     const uint32_t order = s->nurbs.order;
@@ -92,7 +98,10 @@ static void begin(struct program *p, uint32_t order)
 
 /* -- the codes -- */
 
-/* A point between start and end: from the start by I J, or as the curve before ended; P Q from the end. */
+/*
+ * A point between start and end: from the start by I J, or as the curve before ended; P Q from the
+ * end.
+ */
 static bool add_cubic(struct program *p, const struct program_code *code)
 {
     struct program_spline *s = &p->cycle.spline;
@@ -232,7 +241,9 @@ static bool begin_knots(struct program *p)
            takt_report_error_code(p, TAKT_ERROR_SPLINE_START, STEP_MOTION, off_mm);
 }
 
-/* Knots rise; between the ends none is as often there as the order, where the curve would be torn. */
+/*
+ * Knots rise; between the ends none is as often there as the order, where the curve would be torn.
+ */
 static bool check_knot(struct program *p, double knot)
 {
     const struct nurbs *n = &p->cycle.spline.nurbs;
@@ -249,7 +260,10 @@ static bool check_knot(struct program *p, double knot)
     return maths_is_finite(knot);
 }
 
-/* A control point and its knot; knots alone, of which there are as many more as the order, end the curve. */
+/*
+ * A control point and its knot; knots alone, of which there are as many more as the order, end the
+ * curve.
+ */
 static bool add_knots(struct program *p, const struct program_code *code)
 {
     struct program_spline *s = &p->cycle.spline;

@@ -9,8 +9,9 @@
 /* G0, G1; argument: MOVE_RAPID or MOVE_FEED */
 bool takt_straight_move(struct program *p, const struct program_code *code);
 /*
- * G28, G30; argument: the first of the parameters with the position. The axes with a word go to the point it asks
- * for and then on to the reference position; without any word all axes go there at once.
+ * G28, G30; argument: the first of the parameters with the position. The axes with a word go to the
+ * point it asks for and then on to the reference position; without any word all axes go there at
+ * once.
  */
 bool takt_straight_to_reference(struct program *p, const struct program_code *code);
 /* G28.1, G30.1: the position becomes the reference position; argument as above */

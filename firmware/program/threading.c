@@ -76,7 +76,8 @@ static bool set_cuts(struct program *p, const struct program_code *code, struct 
 }
 
 /*
- * Along the taper of length E the tool advances by the pitch in Z while it goes hypot(E, K) for each E:
+ * Along the taper of length E the tool advances by the pitch in Z while it goes hypot(E, K) for
+ * each E:
  *
  *     pitch along the path = P hypot(E, K) / E
  */

@@ -10,9 +10,10 @@
  *     |       |____________________________|
  *     +---------------------------------------- Z
  *
- * The cut number n is J n^(1/R) deep, so that with R = 2 all cuts take away the same area; the last ones, one and H
- * more, K. Each starts further along by its depth times tan Q, so that it cuts with one flank. E, L: over that length
- * the thread begins (L1), ends (L2) or both (L3) at an angle. Negative I: outside thread.
+ * The cut number n is J n^(1/R) deep, so that with R = 2 all cuts take away the same area; the last
+ * ones, one and H more, K. Each starts further along by its depth times tan Q, so that it cuts with
+ * one flank. E, L: over that length the thread begins (L1), ends (L2) or both (L3) at an angle.
+ * Negative I: outside thread.
  */
 #ifndef TAKT_PROGRAM_THREADING_H
 #define TAKT_PROGRAM_THREADING_H

@@ -32,9 +32,9 @@ static bool check_axis(const struct travel *t, unsigned axis, double value)
 }
 
 /*
- * The extreme of an arc in one direction of its plane, a quarter turn: axis = centre + radius sign, where the
- * angle is quarter pi/2. The first time round and the last time round are looked at, because the radius may change
- * with the angle and is then largest in one of them.
+ * The extreme of an arc in one direction of its plane, a quarter turn: axis = centre + radius sign,
+ * where the angle is quarter pi/2. The first time round and the last time round are looked at,
+ * because the radius may change with the angle and is then largest in one of them.
  *
  *     turned = (quarter pi/2 - angle_start) mod 2 pi, in the sense of turning
  *     radius = radius_start + radius_change turned / |sweep|

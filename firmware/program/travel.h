@@ -21,8 +21,8 @@ void takt_travel_report(struct diagnostic *d, uint32_t line, uint32_t column,
                         const struct travel_excess *excess);
 
 /*
- * The same for a motion from the current position; a compensated one is looked at when its way is known. False:
- * p->error names the axis and the coordinate (mm or degrees).
+ * The same for a motion from the current position; a compensated one is looked at when its way is
+ * known. False: p->error names the axis and the coordinate (mm or degrees).
  */
 bool takt_travel_check(struct program *p, const struct move *m);
 

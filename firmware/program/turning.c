@@ -50,7 +50,10 @@ static void add(struct turning *t, bool rapid, struct profile_point end)
     t->move[t->moves++] = (struct turning_move){.rapid = rapid, .end = end};
 }
 
-/* Along a segment to a point of it; an arc of no length would be a circle, a short one is as good as its chord. */
+/*
+ * Along a segment to a point of it; an arc of no length would be a circle, a short one is as good
+ * as its chord.
+ */
 static void add_along(struct turning *t, bool rapid, const struct profile_segment *s,
                       struct profile_point end)
 {
@@ -67,7 +70,10 @@ static void add_along(struct turning *t, bool rapid, const struct profile_segmen
     t->at = end;
 }
 
-/* -- pieces that rise or fall: of arcs one on each side of the centre; of what has no second the second is empty -- */
+/*
+ * -- pieces that rise or fall: of arcs one on each side of the centre; of what has no second the
+ * second is empty --
+ */
 
 static unsigned pieces(const struct turning *t)
 {
@@ -117,7 +123,10 @@ static void lower_level(struct turning *t)
     }
 }
 
-/* Down along a falling piece, to the level or to its end; an arc that the level does not reach to its other end. */
+/*
+ * Down along a falling piece, to the level or to its end; an arc that the level does not reach to
+ * its other end.
+ */
 static void go_down(struct turning *t, const struct profile_segment *s)
 {
     const bool first = t->piece == 0;
@@ -198,7 +207,10 @@ static void step_down(struct turning *t, const struct profile_segment *s)
     }
 }
 
-/* The levels of a pocket count from the tool's first place, those of G71.2 from where the pocket begins. */
+/*
+ * The levels of a pocket count from the tool's first place, those of G71.2 from where the pocket
+ * begins.
+ */
 static void enter_pocket(struct turning *t)
 {
     if (t->words.kind == TURNING_POCKETS) {

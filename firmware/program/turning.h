@@ -1,13 +1,15 @@
 /*
- * The turning cycles G70, G71 and G72 over a profile: one step after the other, in work coordinates of X and Z.
+ * The turning cycles G70, G71 and G72 over a profile: one step after the other, in work coordinates
+ * of X and Z.
  *
  *        stock                      levels: every I from where the tool is, down to the profile
  *   <------------- level 0
  *   \<------------ level 1          G71.1 and G72.1 leave out pockets, what lies behind a rise;
  *    \__<--------- level 2          G71.2 and G72.2 cut them alone
  *
- * Roughing goes down the falling way of the profile to the next level, along it to where the profile rises, off at 45 degrees by
- * R, and back at rapid. At the lowest level it follows the rise, to the next pocket or to the end.
+ * Roughing goes down the falling way of the profile to the next level, along it to where the
+ * profile rises, off at 45 degrees by R, and back at rapid. At the lowest level it follows the
+ * rise, to the next pocket or to the end.
  */
 #ifndef TAKT_PROGRAM_TURNING_H
 #define TAKT_PROGRAM_TURNING_H

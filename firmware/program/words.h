@@ -1,6 +1,6 @@
 /*
- * The words of a line: read, collected with their places, and checked against each other, before any of them does
- * anything.
+ * The words of a line: read, collected with their places, and checked against each other, before
+ * any of them does anything.
  */
 #ifndef TAKT_PROGRAM_WORDS_H
 #define TAKT_PROGRAM_WORDS_H
@@ -11,8 +11,9 @@
 bool takt_words_read(struct program *p);
 
 /*
- * Gives the parameters assigned on the line their new values. The old ones are kept in their place until the next
- * line, so that takt_words_take_back can undo it. False: no room, p->error is set, nothing is changed.
+ * Gives the parameters assigned on the line their new values. The old ones are kept in their place
+ * until the next line, so that takt_words_take_back can undo it. False: no room, p->error is set,
+ * nothing is changed.
  */
 bool takt_words_assign(struct program *p);
 

@@ -1,4 +1,7 @@
-/* What the service starts: programs, and jogs, MDI lines and homing as short programs that it writes itself. */
+/*
+ * What the service starts: programs, and jogs, MDI lines and homing as short programs that it
+ * writes itself.
+ */
 #include "base/assert.h"
 #include "base/decimal.h"
 #include "base/fnv.h"
@@ -32,7 +35,10 @@ static void begin_job(struct service *s, enum service_job job)
     s->digest = FNV_START;
 }
 
-/* Lines are one session: what one sets counts for those after it, until a program or a reset ends the session. */
+/*
+ * Lines are one session: what one sets counts for those after it, until a program or a reset ends
+ * the session.
+ */
 static void keep_modes(struct service *s)
 {
     s->modes = *takt_program_get_modes(&s->controller.reader->program);
@@ -48,7 +54,9 @@ struct tool *takt_service_find_tool(const struct service *s, uint32_t number)
     return NULL;
 }
 
-/* What a program or line has made of tools (G10 L1) lasts, as what it has made of parameters does. */
+/*
+ * What a program or line has made of tools (G10 L1) lasts, as what it has made of parameters does.
+ */
 static void keep_tools(const struct service *s)
 {
     const struct program_tools *changed = &s->controller.reader->program.tools;

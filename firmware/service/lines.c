@@ -4,14 +4,18 @@
  *     sender    line line line line                       line
  *     program   |    |    |    | quiet, little ahead: end  | the next program, with the modes of the last
  *
- * A sender that waits for an answer before it sends the next line is quiet for as long as its way is. So the end waits, and
- * before the first motion too: then as much is known of the path as of a program in a file, and its setpoints are the same.
+ * A sender that waits for an answer before it sends the next line is quiet for as long as its way
+ * is. So the end waits, and before the first motion too: then as much is known of the path as of a
+ * program in a file, and its setpoints are the same.
  */
 #include "service/service_private.h"
 
 #include <stddef.h>
 
-/* Longest way of an answer and the next line: some of a USB adapter's 16 ms. A jog or a line by hand waits as long. */
+/*
+ * Longest way of an answer and the next line: some of a USB adapter's 16 ms. A jog or a line by
+ * hand waits as long.
+ */
 #define QUIET_S 0.1
 
 /* A sender that needs longer than this for the lines of a whole look-ahead is not waited for. */
@@ -57,8 +61,8 @@ static long read_lines(void *context, char *buffer, size_t size)
 }
 
 /*
- * A line that would leave the travel ends the program: those after it reckon with where it should have led. So does one in a
- * contour that is compensated, which has become another.
+ * A line that would leave the travel ends the program: those after it reckon with where it should
+ * have led. So does one in a contour that is compensated, which has become another.
  */
 static bool refuse_line(void *listener, const struct diagnostic *why)
 {

@@ -62,7 +62,10 @@ static void look_at_axes(const struct service *s, uint32_t *value)
     value[REGISTER_AXES] = takt_machine_axes(&s->controller.machine);
 }
 
-/* The line read last may be ahead of the one being executed: linear offsets are those of the latter. */
+/*
+ * The line read last may be ahead of the one being executed: linear offsets are those of the
+ * latter.
+ */
 static void look_at_work(const struct service *s, const struct block *block, struct point *work)
 {
     const struct program *p = &s->controller.reader->program;

@@ -1,5 +1,6 @@
 /*
- * What a panel may order. Each order is checked as a whole first, then done: so nothing has changed when it is refused.
+ * What a panel may order. Each order is checked as a whole first, then done: so nothing has changed
+ * when it is refused.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -52,7 +53,10 @@ static enum panel_verdict check_start(const struct service *s)
                       takt_service_open_plan(s, &plan) != SERVICE_PLAN_UNFIT);
 }
 
-/* A jog without a distance ends when its coil is cleared: whoever starts it must be known to be there. */
+/*
+ * A jog without a distance ends when its coil is cleared: whoever starts it must be known to be
+ * there.
+ */
 static enum panel_verdict check_jog(const struct service *s, bool negative)
 {
     if (s->job == SERVICE_JOG)
@@ -259,7 +263,10 @@ static bool push_button(struct service *s, enum panel_id id, const struct panel_
     return true;
 }
 
-/* Lines that go on with the modes of the line before, and the position shown, go by the new offset at once. */
+/*
+ * Lines that go on with the modes of the line before, and the position shown, go by the new offset
+ * at once.
+ */
 static void load_system(struct service *s)
 {
     struct program *p = &s->controller.reader->program;
@@ -389,7 +396,9 @@ static bool is_ambiguous(const struct panel_order *order)
     return buttons > 1;
 }
 
-/* Settings are made on the way, since what follows may depend on them: which tool is selected, say. */
+/*
+ * Settings are made on the way, since what follows may depend on them: which tool is selected, say.
+ */
 static enum panel_verdict check_order(struct service *s, const struct panel_order *order)
 {
     enum panel_verdict verdict = PANEL_DONE;

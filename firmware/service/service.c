@@ -8,8 +8,9 @@
 #include <string.h>
 
 /*
- * This many cycles without motion after a hold was asked for are rest: the first may be the last one before the hold is
- * seen, and a stretch may begin with a cycle too slow to move any axis by a bit.
+ * This many cycles without motion after a hold was asked for are rest: the first may be the last
+ * one before the hold is seen, and a stretch may begin with a cycle too slow to move any axis by a
+ * bit.
  */
 #define REST_CYCLES 3
 
@@ -88,7 +89,10 @@ void takt_service_raise(struct service *s, enum panel_alarm alarm, const struct 
     s->alarm_text = *text;
 }
 
-/* A jog has nothing to go on with: it is given up. Drives that look for their homes can only be stopped at once. */
+/*
+ * A jog has nothing to go on with: it is given up. Drives that look for their homes can only be
+ * stopped at once.
+ */
 void takt_service_hold(struct service *s, enum panel_hold reason)
 {
     if (s->job == SERVICE_NOTHING)
@@ -115,7 +119,10 @@ static void raise_simple(struct service *s, enum panel_alarm alarm, enum takt_er
     takt_service_raise(s, alarm, &text);
 }
 
-/* Whoever has claimed control and is no longer heard has lost it, and nothing goes on without the operator. */
+/*
+ * Whoever has claimed control and is no longer heard has lost it, and nothing goes on without the
+ * operator.
+ */
 static void watch_panel(struct service *s)
 {
     const double quiet_ms =
@@ -131,7 +138,9 @@ static void watch_panel(struct service *s)
     takt_service_hold(s, PANEL_HOLD_PANEL);
 }
 
-/* A spindle that should turn and is lost stops the axes on their path, while they are still on it. */
+/*
+ * A spindle that should turn and is lost stops the axes on their path, while they are still on it.
+ */
 static void watch_spindle(struct service *s)
 {
     const struct spindle_feedback *spindle = &s->inputs.spindle;
@@ -144,7 +153,9 @@ static void watch_spindle(struct service *s)
     takt_service_hold(s, PANEL_HOLD_SPINDLE);
 }
 
-/* Nothing is held: the axes go on as soon as the text does. The operator is told, once a program. */
+/*
+ * Nothing is held: the axes go on as soon as the text does. The operator is told, once a program.
+ */
 static void watch_text(struct service *s)
 {
     if (s->has_starved || s->job != SERVICE_PROGRAM || !takt_controller_is_starved(&s->controller))

@@ -1,14 +1,15 @@
 /*
- * The controller as a service: the states above single programs, what the operator's panel orders, and what is shown to
- * it. Jog, homing and MDI are programs of a line or two, so they run through the same planner, limits and drives.
+ * The controller as a service: the states above single programs, what the operator's panel orders,
+ * and what is shown to it. Jog, homing and MDI are programs of a line or two, so they run through
+ * the same planner, limits and drives.
  *
  *     takt_service_order        what a panel wants: all of it or nothing, at once
  *     takt_service_background   reads and plans ahead, as often as there is time
  *     takt_service_cycle        one control cycle
  *     takt_service_look         everything a panel can read
  *
- * takt_service_cycle may interrupt takt_service_background, as the interrupt of a target does. Otherwise the caller sees to it that
- * none of these runs while another does.
+ * takt_service_cycle may interrupt takt_service_background, as the interrupt of a target does.
+ * Otherwise the caller sees to it that none of these runs while another does.
  */
 #ifndef TAKT_SERVICE_SERVICE_H
 #define TAKT_SERVICE_SERVICE_H
@@ -21,7 +22,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Programs as the service sees them; what an upload has brought waits beside until it is adopted. */
+/*
+ * Programs as the service sees them; what an upload has brought waits beside until it is adopted.
+ */
 struct service_programs {
     /* A source at the beginning of the program. False: there is none. */
     bool (*open)(void *context, struct source *source);
@@ -38,7 +41,10 @@ enum service_plan {
 
 /* A program planned ahead that comes while it runs. All in the control thread. */
 struct service_plans {
-    /* One for the program that is there is about to come; what was there before is dropped. NULL: none can come. */
+    /*
+     * One for the program that is there is about to come; what was there before is dropped. NULL:
+     * none can come.
+     */
     void (*announce)(void *context);
     enum service_plan (*open)(void *context, struct replay_source *source);
     void (*forget)(void *context);
@@ -46,11 +52,14 @@ struct service_plans {
 };
 
 /*
- * Lines of a console: a program whose text comes while it runs, as many lines as there are. read and refuse are called by the
- * background, between two cycles or not; the rest between two cycles.
+ * Lines of a console: a program whose text comes while it runs, as many lines as there are. read
+ * and refuse are called by the background, between two cycles or not; the rest between two cycles.
  */
 struct service_lines {
-    /* A source of the lines that come; when it is asked for the next one, the last one has been taken. NULL: no console. */
+    /*
+     * A source of the lines that come; when it is asked for the next one, the last one has been
+     * taken. NULL: no console.
+     */
     void (*open)(void *context, struct source *source);
     /* The line handed out last is wrong; it has changed nothing, and those after it go on. */
     void (*refuse)(void *context, const struct diagnostic *why);
@@ -97,7 +106,10 @@ void takt_service_set_program(struct service *s, uint32_t size, uint32_t crc);
 
 /* Where the next program starts; 0: at its beginning. */
 void takt_service_set_start_line(struct service *s, uint32_t line);
-/* The line at which the program that runs is, or the last one was cut short; 0: it has come to its end. */
+/*
+ * The line at which the program that runs is, or the last one was cut short; 0: it has come to its
+ * end.
+ */
 uint32_t takt_service_get_cut_line(const struct service *s);
 
 /* Between two cycles. Nothing has changed unless PANEL_DONE. */
@@ -117,7 +129,10 @@ struct outputs takt_service_get_outputs(const struct service *s);
 /* True once after a trip of the spindle has been acknowledged: its drive is to be reset. */
 bool takt_service_take_spindle_reset(struct service *s);
 
-/* This bus is gone, and its drives stop by themselves: an alarm, and all stop. Every cycle as long as it is. */
+/*
+ * This bus is gone, and its drives stop by themselves: an alarm, and all stop. Every cycle as long
+ * as it is.
+ */
 void takt_service_lose_bus(struct service *s, unsigned bus);
 
 enum panel_state takt_service_get_state(const struct service *s);

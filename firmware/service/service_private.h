@@ -6,7 +6,10 @@
 
 #include "service/service.h"
 
-/* service_jobs.c: starting and ending what runs. False: there is no program, or it would leave the travel. */
+/*
+ * service_jobs.c: starting and ending what runs. False: there is no program, or it would leave the
+ * travel.
+ */
 bool takt_service_start_program(struct service *s);
 void takt_service_start_mdi(struct service *s, const char *line);
 /* The line as a jog: it is given up by a hold. */

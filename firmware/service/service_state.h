@@ -12,8 +12,8 @@
 #define SERVICE_TEXT_MAX PANEL_MDI_MAX
 
 /*
- * What the panel sets and reads back, one line each: SETTING(register, field, type, at first), in counts of
- * the register. Orders and snapshots go by this table (orders.c, look.c).
+ * What the panel sets and reads back, one line each: SETTING(register, field, type, at first), in
+ * counts of the register. Orders and snapshots go by this table (orders.c, look.c).
  */
 #define SERVICE_SETTINGS(SETTING)                                                                  \
     SETTING(FEED_OVERRIDE, feed_override, uint16_t, 1000)                                          \
@@ -58,8 +58,8 @@ struct service {
     bool giving_up;       /* what runs is dropped as soon as it is at rest */
     uint32_t held_block;  /* at whose end a single block has been held; 0: none yet */
     bool resets_spindle;  /* its drive is to be reset */
-    volatile bool
-        is_planning; /* the background is at work: a cycle that interrupts it drops nothing it works on */
+    /* the background is at work: a cycle that interrupts it drops nothing it works on */
+    volatile bool is_planning;
     bool has_starved;      /* the program that runs has had to wait for its text */
     bool emergency;        /* the button is in */
     bool jog_is_negative;  /* of a jog */

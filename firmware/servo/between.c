@@ -1,10 +1,12 @@
 /*
- * Targets x0 x1 x2 x3, one a cycle. From x1 to x2 with the velocities and accelerations of central differences at both,
+ * Targets x0 x1 x2 x3, one a cycle. From x1 to x2 with the velocities and accelerations of central
+ * differences at both,
  *
  *     v1 = (x2 - x0) / 2,  a1 = x2 - 2 x1 + x0,     v2 = (x3 - x1) / 2,  a2 = x3 - 2 x2 + x1
  *
- * there is one polynomial of fifth degree. Its neighbours have the same there: position, velocity and acceleration are
- * continuous, and a parabola stays one. x3 has to be known, so the drive is a cycle late.
+ * there is one polynomial of fifth degree. Its neighbours have the same there: position, velocity
+ * and acceleration are continuous, and a parabola stays one. x3 has to be known, so the drive is a
+ * cycle late.
  */
 #include "servo/between.h"
 

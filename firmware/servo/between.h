@@ -1,5 +1,6 @@
 /*
- * What a drive does between targets that come once a cycle (object 60C0 = -1): a polynomial with continuous acceleration.
+ * What a drive does between targets that come once a cycle (object 60C0 = -1): a polynomial with
+ * continuous acceleration.
  */
 #ifndef TAKT_SERVO_BETWEEN_H
 #define TAKT_SERVO_BETWEEN_H
@@ -15,9 +16,10 @@ struct between {
 };
 
 /*
- * Takes the target of this cycle, and gives the piece to go in it: position over the part u = 0 ... 1 of the cycle, by powers
- * of u. It ends at the target of the cycle before, which the next target tells how to pass. at_mm: where the command is; if
- * it is not where the last piece ended, the axis is taken to stand there.
+ * Takes the target of this cycle, and gives the piece to go in it: position over the part u = 0 ...
+ * 1 of the cycle, by powers of u. It ends at the target of the cycle before, which the next target
+ * tells how to pass. at_mm: where the command is; if it is not where the last piece ended, the axis
+ * is taken to stand there.
  */
 void takt_between_take(struct between *between, double at_mm, double target_mm,
                        double piece[BETWEEN_COEFFICIENTS]);

@@ -71,7 +71,10 @@ struct motor_port takt_compensation_get_port(struct compensation *compensation)
     return (struct motor_port){.turn = turn_axis, .sense = sense_axis, .context = compensation};
 }
 
-/* A fade of b over the time T has accelerations of A b / T2 at most, A being those of 1 over a second. */
+/*
+ * A fade of b over the time T has accelerations of A b / T2 at most, A being those of 1 over a
+ * second.
+ */
 static double crossing_s(double backlash_mm, double acceleration_mm_s2)
 {
     struct fade_pace second;
@@ -81,8 +84,9 @@ static double crossing_s(double backlash_mm, double acceleration_mm_s2)
 }
 
 /*
- * Where the motor is to be lies in a window as wide as the resolution, which it pushes along: at which end is the direction. The
- * motor's way is that of the axis and of the play: a play that fades is no way back.
+ * Where the motor is to be lies in a window as wide as the resolution, which it pushes along: at
+ * which end is the direction. The motor's way is that of the axis and of the play: a play that
+ * fades is no way back.
  */
 void takt_compensation_follow(struct compensation *compensation, const struct compensation_way *way)
 {

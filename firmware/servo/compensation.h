@@ -1,11 +1,12 @@
 /*
- * What a drive takes back of its mechanics: a motor port on a motor port. What stands above it, the loops, homing and
- * probes, sees the axis instead of the motor.
+ * What a drive takes back of its mechanics: a motor port on a motor port. What stands above it, the
+ * loops, homing and probes, sees the axis instead of the motor.
  *
  *     y = encoder - play      x = y + K(y - origin)
  *
- * K is the error of pitch, in force once the axis is homed. play is half the backlash, ahead of the axis in the direction in
- * which it was told to go last; at a reversal it fades from one side to the other.
+ * K is the error of pitch, in force once the axis is homed. play is half the backlash, ahead of the
+ * axis in the direction in which it was told to go last; at a reversal it fades from one side to
+ * the other.
  */
 #ifndef TAKT_SERVO_COMPENSATION_H
 #define TAKT_SERVO_COMPENSATION_H

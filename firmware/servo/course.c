@@ -1,12 +1,13 @@
 /*
- * With N cycles t averaged, the acceleration of the average changes by (a(k) - a(k - N)) / N in a cycle. Accelerations of
- * the trapezoid are between A and -D, in its last cycle -2 D, so that
+ * With N cycles t averaged, the acceleration of the average changes by (a(k) - a(k - N)) / N in a
+ * cycle. Accelerations of the trapezoid are between A and -D, in its last cycle -2 D, so that
  *
  *     |jerk| <= (A + 2 D) / (N t) <= J   with   N = ceil((A + 2 D) / (J t))
  *
- * whatever the target does. The average comes to the target N cycles after the trapezoid, and stays between the places
- * that it has been at: no overshoot. Rejected: seven segments planned at each target, which is as exact at rest only, and
- * a jerk chosen in each cycle by the way to stop, which lands in steps of its own rounding.
+ * whatever the target does. The average comes to the target N cycles after the trapezoid, and stays
+ * between the places that it has been at: no overshoot. Rejected: seven segments planned at each
+ * target, which is as exact at rest only, and a jerk chosen in each cycle by the way to stop, which
+ * lands in steps of its own rounding.
  */
 #include "servo/course.h"
 
@@ -66,7 +67,10 @@ static int64_t place_of(double at_mm)
     return (int64_t)takt_maths_round(at_mm * COURSE_PLACES_PER_MM);
 }
 
-/* Begins with this many cycles in which the axis has moved evenly, so that their average is where it is now. */
+/*
+ * Begins with this many cycles in which the axis has moved evenly, so that their average is where
+ * it is now.
+ */
 static void begin(struct course_average *average, const struct course *command, uint32_t count,
                   double cycle_s)
 {

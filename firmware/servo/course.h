@@ -1,5 +1,6 @@
 /*
- * The way of a profile: a trapezoid of velocity to a target, and the same averaged, so that its jerk is limited.
+ * The way of a profile: a trapezoid of velocity to a target, and the same averaged, so that its
+ * jerk is limited.
  */
 #ifndef TAKT_SERVO_COURSE_H
 #define TAKT_SERVO_COURSE_H
@@ -31,13 +32,15 @@ struct course_average {
 /* value goes to goal, by so much at most. */
 double takt_course_approach(double value, double goal, double by);
 
-/* A cycle of a trapezoid. Near enough to get there within the next cycle's rounding, it is there. */
+/*
+ * A cycle of a trapezoid. Near enough to get there within the next cycle's rounding, it is there.
+ */
 void takt_course_step(struct course *course, double target_mm, const struct course_ramps *ramps,
                       double cycle_s);
 
 /*
- * The same with limited jerk: from where the command is, with its velocity, which both become those of the next cycle.
- * Averages over other cycles begin only at rest.
+ * The same with limited jerk: from where the command is, with its velocity, which both become those
+ * of the next cycle. Averages over other cycles begin only at rest.
  */
 void takt_course_step_average(struct course_average *average, struct course *command,
                               double target_mm, const struct course_ramps *ramps, double cycle_s);

@@ -1,10 +1,10 @@
 /*
- * The object dictionary of a drive: takt's own (object_table.h), or that of an electronic data sheet (CiA 306), so
- * that a master can be tried against a drive that is not there.
+ * The object dictionary of a drive: takt's own (object_table.h), or that of an electronic data
+ * sheet (CiA 306), so that a master can be tried against a drive that is not there.
  *
- * What counts of a data sheet: which objects there are, their access, defaults and limits, what may be mapped where,
- * the number of PDOs and of their entries, dummies, and the modes. Objects that takt's own drive has, of the same size,
- * do what they do there; all others are memory.
+ * What counts of a data sheet: which objects there are, their access, defaults and limits, what may
+ * be mapped where, the number of PDOs and of their entries, dummies, and the modes. Objects that
+ * takt's own drive has, of the same size, do what they do there; all others are memory.
  */
 #ifndef TAKT_SERVO_DICTIONARY_H
 #define TAKT_SERVO_DICTIONARY_H
@@ -31,7 +31,10 @@ const struct object_row *takt_dictionary_find(const struct dictionary *dictionar
 
 enum dictionary_part { DICTIONARY_ALL, DICTIONARY_NOT_OF_MACHINE };
 
-/* Default values of the objects, with the node id where it belongs; of all, or without those that the machine decides. */
+/*
+ * Default values of the objects, with the node id where it belongs; of all, or without those that
+ * the machine decides.
+ */
 void takt_dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
                                  struct drive_objects *objects, uint8_t node);
 

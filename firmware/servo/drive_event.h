@@ -18,7 +18,8 @@ enum drive_event_kind {
     DRIVE_EVENT_HOMING,    /* first: 0 begun, 1 attained, 2 interrupted, 3 failed; second: method */
     DRIVE_EVENT_PROBE, /* first: touch probe, 1 or 2; second: increments that have been latched */
     DRIVE_EVENT_TIME,  /* first: ms since midnight; second: days since 1984 */
-    DRIVE_EVENT_FAULT, /* first: line of the fault script that takes effect; second: enum inject_kind */
+    /* first: line of the fault script that takes effect; second: enum inject_kind */
+    DRIVE_EVENT_FAULT,
     DRIVE_EVENT_FAULT_END /* the same, it ends */
 };
 

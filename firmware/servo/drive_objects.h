@@ -1,6 +1,6 @@
 /*
- * The values of a drive's object dictionary, as its own memory holds them. object_table.c says which
- * object is which field.
+ * The values of a drive's object dictionary, as its own memory holds them. object_table.c says
+ * which object is which field.
  *
  * Positions are in increments, velocities in increments/s, accelerations in increments/s2; what an
  * increment is, objects 6091 and 6092 say.
@@ -95,8 +95,8 @@ struct drive_settings {
     uint8_t interpolation_period;         /* 60C2:1 */
     int8_t interpolation_index;           /* 60C2:2: the period is this power of ten of seconds */
     int8_t homing_method;                 /* 6098 */
-    uint16_t
-        homing_torque; /* 2003: 0.1 % of the rated one; a motor that stands with it is at a hard stop */
+    /* 2003: 0.1 % of the rated one; a motor that stands with it is at a hard stop */
+    uint16_t homing_torque;
     uint8_t buffer_organisation;    /* 60C4:3 */
     uint16_t buffer_position;       /* 60C4:4 */
     uint8_t pitch_points;           /* 2010:1; 0: no error of pitch is taken back */

@@ -1,12 +1,14 @@
 /*
- * Homing mode (CiA 402-2): methods 1 to 14 and, without the index pulse, 17 to 30 by a switch, 33 and 34 by an index pulse,
- * 35 and 37 here and now; and -1 to -4, as several makers have them, by a hard stop.
+ * Homing mode (CiA 402-2): methods 1 to 14 and, without the index pulse, 17 to 30 by a switch, 33
+ * and 34 by an index pulse, 35 and 37 here and now; and -1 to -4, as several makers have them, by a
+ * hard stop.
  *
  *     SEARCH --switch--> (PASS --left again-->) EDGE --switch--> (INDEX --pulse-->) STOP --stands--> IDLE, homed
  *     PUSH --hard stop--> (INDEX --pulse-->) STOP
  *       (fast)                (fast)           (slow)             (slow)
  *
- * The encoder is latched where switch and pulse truly are (hal/motor.h), not where the cycle happens to see them.
+ * The encoder is latched where switch and pulse truly are (hal/motor.h), not where the cycle
+ * happens to see them.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -32,10 +34,11 @@
 #define PUSH_NS (UINT64_C(10) * MILLISECOND_NS)
 
 /*
- * First fast in direction `search` until the input is as `search_until`; then, where the edge is that from outside, on in
- * direction `pass` until it is no longer; then slowly in direction `edge` until it changes, then on to the next index pulse.
- * A method without search has only the pulse. The home switch of 7 to 14 and 23 to 30 lies between the ends of the axis: an
- * end that is met first turns the search round.
+ * First fast in direction `search` until the input is as `search_until`; then, where the edge is
+ * that from outside, on in direction `pass` until it is no longer; then slowly in direction `edge`
+ * until it changes, then on to the next index pulse. A method without search has only the pulse.
+ * The home switch of 7 to 14 and 23 to 30 lies between the ends of the axis: an end that is met
+ * first turns the search round.
  *
  *                     ________            edge that counts, and on which side of it the pulse is
  *     _______________|  home  |______         7, 8: left edge, left and right of it; 9, 10: right edge
@@ -115,7 +118,9 @@ uint32_t takt_servo_inputs(const struct servo *drive)
     return drive->loop.sense.inputs | (drive->probe.touches ? INPUT_PROBE : 0);
 }
 
-/* The pulse comes once a turn of the motor; the next one that is passed in this direction counts. */
+/*
+ * The pulse comes once a turn of the motor; the next one that is passed in this direction counts.
+ */
 static void await_index(struct servo *drive, double direction)
 {
     TAKT_ASSERT(direction != 0.0);
@@ -179,7 +184,10 @@ static void run_towards(struct servo *drive, int8_t direction, double velocity_m
                       cycle_ns);
 }
 
-/* Directions of a method are those of the drive. An end of the axis that the method does not want is where it fails. */
+/*
+ * Directions of a method are those of the drive. An end of the axis that the method does not want
+ * is where it fails.
+ */
 static bool hits_other_end(const struct servo *drive, const struct method *method, int8_t direction)
 {
     uint32_t end = direction < 0 ? INPUT_NEGATIVE_LIMIT : INPUT_POSITIVE_LIMIT;
@@ -212,8 +220,8 @@ static bool is_active(const struct servo *drive, const struct method *method)
 }
 
 /*
- * The switch has just become so, and the motor runs in this direction. Where it has overrun a short one it meets the other
- * edge first, and in the other direction.
+ * The switch has just become so, and the motor runs in this direction. Where it has overrun a short
+ * one it meets the other edge first, and in the other direction.
  */
 static bool becomes(struct servo *drive, const struct method *method, bool level, int8_t direction)
 {

@@ -1,6 +1,7 @@
 /*
- * An I/O node (CiA 401) instead of a drive: the same node on the bus, with outputs and inputs in place of a motor. Every
- * input is looped back from the output of its number, or is high for good: a closed circuit.
+ * An I/O node (CiA 401) instead of a drive: the same node on the bus, with outputs and inputs in
+ * place of a motor. Every input is looped back from the output of its number, or is high for good:
+ * a closed circuit.
  */
 #include "canopen/objects.h"
 #include "servo/servo_private.h"
@@ -29,7 +30,10 @@ static void note_change(struct servo *drive)
     takt_servo_look_soon(drive);
 }
 
-/* Without a controller all outputs are low, and 0: CiA 401, objects 6206, 6207, 6443 and 6444 by default. */
+/*
+ * Without a controller all outputs are low, and 0: CiA 401, objects 6206, 6207, 6443 and 6444 by
+ * default.
+ */
 void takt_servo_run_io(struct servo *drive)
 {
     bool is_controlled = drive->nmt == NMT_OPERATIONAL && drive->communication_error == EMCY_NONE;

@@ -9,8 +9,9 @@
 #define STANDSTILL_REVOLUTIONS_PER_S 1e-3
 
 /*
- * Everything in units of the axis: with h = travel_per_revolution / 2 pi, an angle phi of the motor is h phi of the axis, and
- * a torque M of the motor an acceleration h M / J. The velocity loop is v' = Kp (e + integral e / Ti), Kp = 2 pi bandwidth.
+ * Everything in units of the axis: with h = travel_per_revolution / 2 pi, an angle phi of the motor
+ * is h phi of the axis, and a torque M of the motor an acceleration h M / J. The velocity loop is
+ * v' = Kp (e + integral e / Ti), Kp = 2 pi bandwidth.
  */
 void takt_servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
                           const struct motor_port *motor)
@@ -38,8 +39,8 @@ void takt_servo_loop_init(struct servo_loop *loop, const struct servo_loop_confi
 }
 
 /*
- * The loops think in accelerations, and the motor gets the torque M = J_told a / h: with an inertia J it is accelerated by
- * J_told / J of what they want.
+ * The loops think in accelerations, and the motor gets the torque M = J_told a / h: with an inertia
+ * J it is accelerated by J_told / J of what they want.
  */
 void takt_servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config)
 {
@@ -94,7 +95,10 @@ static struct cycle begin_cycle(struct servo_loop *loop, uint32_t cycle_ns)
     return (struct cycle){.limit_mm_s2 = takt_servo_loop_torque_limit_mm_s2(loop)};
 }
 
-/* For a command that moves at a velocity and changes it: by the loop's inertia, and against friction. */
+/*
+ * For a command that moves at a velocity and changes it: by the loop's inertia, and against
+ * friction.
+ */
 static double forward_torque_mm_s2(const struct servo_loop *loop, double velocity_mm_s,
                                    double acceleration_mm_s2)
 {
@@ -132,7 +136,10 @@ static double control_velocity(struct servo_loop *loop, const struct cycle *c, d
     return maths_clamp(wanted_mm_s2, -c->limit_mm_s2, c->limit_mm_s2);
 }
 
-/* A step of the loops: position loop  v = Kv (told - measured) + forward,  velocity loop, motor, encoder. */
+/*
+ * A step of the loops: position loop  v = Kv (told - measured) + forward,  velocity loop, motor,
+ * encoder.
+ */
 static void step(struct servo_loop *loop, const struct cycle *c, double told_mm)
 {
     double error_mm = told_mm - loop->measured_mm;
@@ -227,8 +234,9 @@ void takt_servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm
 }
 
 /*
- * The motor has moved in the cycle by no more than at standstill, or a step of the encoder, and does not move faster at
- * its end: where it overshoots and turns round, way out and way back may cancel.
+ * The motor has moved in the cycle by no more than at standstill, or a step of the encoder, and
+ * does not move faster at its end: where it overshoots and turns round, way out and way back may
+ * cancel.
  */
 static bool stands(const struct servo_loop *loop, double moved_mm)
 {

@@ -1,7 +1,8 @@
 /*
  * Position and velocity loop of a drive, and how it brakes. What it moves is behind hal/motor.h.
  *
- * All in units of the axis, mm or rad. A cycle is divided into equal steps, as few as are no longer than loop_period_us.
+ * All in units of the axis, mm or rad. A cycle is divided into equal steps, as few as are no longer
+ * than loop_period_us.
  */
 #ifndef TAKT_SERVO_LOOP_H
 #define TAKT_SERVO_LOOP_H
@@ -14,8 +15,8 @@
 #include <stdint.h>
 
 /*
- * Velocity gain times the loops' period: an inertia that follows its torque at once rings above 1, and is unstable above 2;
- * half of 1 leaves room for the rest.
+ * Velocity gain times the loops' period: an inertia that follows its torque at once rings above 1,
+ * and is unstable above 2; half of 1 leaves room for the rest.
  */
 #define SERVO_LOOP_GAIN_STEP_MAX 0.5
 
@@ -72,11 +73,16 @@ struct servo_loop {
     double torque_offset_mm_s2;   /* the same for torque (object 60B2) */
 };
 
-/* The command is where the encoder says the motor is. motor must stay usable as long as the loop. */
+/*
+ * The command is where the encoder says the motor is. motor must stay usable as long as the loop.
+ */
 void takt_servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
                           const struct motor_port *motor);
 
-/* From now on it has gains, feed-forward and told inertia of config; motor and encoder stay as they are. */
+/*
+ * From now on it has gains, feed-forward and told inertia of config; motor and encoder stay as they
+ * are.
+ */
 void takt_servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config);
 
 /* Between two cycles something about the motor has changed at once: it is looked at anew. */
@@ -84,29 +90,41 @@ void takt_servo_loop_look(struct servo_loop *loop);
 
 /* Cycles are cycle_ns long, > 0. */
 
-/* One cycle with torque, in which the command moves from where it is to command_mm at a constant velocity. */
+/*
+ * One cycle with torque, in which the command moves from where it is to command_mm at a constant
+ * velocity.
+ */
 void takt_servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycle_ns);
 
-/* The same along a piece of curve from where it is, over the part of the cycle; acceleration is fed forward all along it. */
+/*
+ * The same along a piece of curve from where it is, over the part of the cycle; acceleration is fed
+ * forward all along it.
+ */
 void takt_servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
                                   double end_mm, uint32_t cycle_ns);
 
 /* One cycle of the velocity loop alone: the command stays with the motor. */
 void takt_servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cycle_ns);
 
-/* One cycle with the torque for this acceleration, as far as there is so much; the command stays with the motor. */
+/*
+ * One cycle with the torque for this acceleration, as far as there is so much; the command stays
+ * with the motor.
+ */
 void takt_servo_loop_push(struct servo_loop *loop, double acceleration_mm_s2, uint32_t cycle_ns);
 
 /* One cycle without torque: the command stays with the motor. */
 void takt_servo_loop_coast(struct servo_loop *loop, uint32_t cycle_ns);
 
 /*
- * Before the first takt_servo_loop_brake: from here the motor is to stop by deceleration_mm_s2 (> 0), whatever it was told
- * before.
+ * Before the first takt_servo_loop_brake: from here the motor is to stop by deceleration_mm_s2 (>
+ * 0), whatever it was told before.
  */
 void takt_servo_loop_begin_brake(struct servo_loop *loop, double deceleration_mm_s2);
 
-/* One cycle of stopping: the command slows down and takes the motor with it. True: the motor stands. */
+/*
+ * One cycle of stopping: the command slows down and takes the motor with it. True: the motor
+ * stands.
+ */
 bool takt_servo_loop_brake(struct servo_loop *loop, uint32_t cycle_ns);
 
 /* The motor stands at something: the command comes back to it, and nothing pushes any more. */

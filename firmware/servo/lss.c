@@ -1,6 +1,6 @@
 /*
- * Layer setting services (CiA 305), the slave's end: a master finds a node by its identity (1018) and gives it its node id,
- * which is in force from the next reset on. Bit timing cannot be set.
+ * Layer setting services (CiA 305), the slave's end: a master finds a node by its identity (1018)
+ * and gives it its node id, which is in force from the next reset on. Bit timing cannot be set.
  *
  *     WAITING --switch global 1, switch selective, fastscan--> CONFIGURATION --switch global 0--> WAITING
  */
@@ -80,8 +80,9 @@ static void identify_by(struct servo *drive, unsigned step, uint32_t value)
 }
 
 /*
- * Nodes without an id say whether the upper bits of a part of their identity are these, down to bit `check`; who has all bits
- * of a part goes on to the next. After the last one there is one node left.
+ * Nodes without an id say whether the upper bits of a part of their identity are these, down to bit
+ * `check`; who has all bits of a part goes on to the next. After the last one there is one node
+ * left.
  */
 static void fastscan(struct servo *drive, uint32_t value, uint8_t check, uint8_t part, uint8_t next)
 {
@@ -166,7 +167,10 @@ void takt_servo_take_lss(struct servo *drive, const struct can_frame *frame)
         take_configuration(drive, command, data[1]);
 }
 
-/* What counts from the node id counts from the new one, where it has not been set to something else. */
+/*
+ * What counts from the node id counts from the new one, where it has not been set to something
+ * else.
+ */
 static void renumber(const struct servo *drive, struct drive_objects *objects, uint8_t to)
 {
     const struct dictionary *dictionary = drive->dictionary;
@@ -179,7 +183,10 @@ static void renumber(const struct servo *drive, struct drive_objects *objects, u
     }
 }
 
-/* A reset: the node id that has been configured, or at one of the whole node the one that has been stored. */
+/*
+ * A reset: the node id that has been configured, or at one of the whole node the one that has been
+ * stored.
+ */
 void takt_servo_apply_lss(struct servo *drive, bool whole_node)
 {
     struct drive_lss *lss = &drive->lss;

@@ -1,6 +1,6 @@
 /*
- * The drive's own table of its screw's error of pitch and its backlash (objects 2010 and 2011): as PDOs are mapped, points
- * are written while their number is 0, and count when it is written.
+ * The drive's own table of its screw's error of pitch and its backlash (objects 2010 and 2011): as
+ * PDOs are mapped, points are written while their number is 0, and count when it is written.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -21,7 +21,9 @@ static bool make_pitch(const struct servo *drive, unsigned points, struct pitch 
     return takt_pitch_make(pitch);
 }
 
-/* Without torque the command stays with the motor: nothing jumps but what is said of its position. */
+/*
+ * Without torque the command stays with the motor: nothing jumps but what is said of its position.
+ */
 static bool may_change(const struct servo *drive)
 {
     bool has_torque = drive->state == CIA402_ENABLED || drive->state == CIA402_QUICK_STOP ||
@@ -62,7 +64,9 @@ void takt_servo_derive_compensation(struct servo *drive)
     takt_servo_take_origin(drive);
 }
 
-/* Nobody tells it to go by less than an increment, and nobody sees less than a step of the encoder. */
+/*
+ * Nobody tells it to go by less than an increment, and nobody sees less than a step of the encoder.
+ */
 void takt_servo_note_way(struct servo *drive)
 {
     const struct servo_loop *loop = &drive->loop;

@@ -197,7 +197,10 @@ static void check_reached(struct servo *drive, double target_mm, uint32_t cycle_
     takt_servo_note_reached(drive, is_inside, o->position_window_ms, cycle_ns);
 }
 
-/* With an end velocity the target is passed on the way to the next one, in the cycle that would reach it. */
+/*
+ * With an end velocity the target is passed on the way to the next one, in the cycle that would
+ * reach it.
+ */
 static bool passes_target(const struct course *course, double target_mm,
                           const struct course_ramps *ramps, uint32_t cycle_ns)
 {

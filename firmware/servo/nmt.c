@@ -1,5 +1,6 @@
 /*
- * CiA 301: the node's state, and who watches whom: heartbeats that are sent and heard, and node guarding.
+ * CiA 301: the node's state, and who watches whom: heartbeats that are sent and heard, and node
+ * guarding.
  */
 #include "canopen/nmt.h"
 #include "base/assert.h"
@@ -139,8 +140,8 @@ static bool can_be_guarded(const struct servo *drive)
 }
 
 /*
- * A guarding master asks for the state, and is watched from its first question on (CiA 301, 7.2.8.3.2.1). A node has either
- * that or a heartbeat.
+ * A guarding master asks for the state, and is watched from its first question on (CiA 301,
+ * 7.2.8.3.2.1). A node has either that or a heartbeat.
  */
 void takt_servo_take_guard(struct servo *drive)
 {

@@ -91,7 +91,9 @@ static uint32_t check_sync_id(uint32_t value)
     return is_allowed ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
 }
 
-/* An identifier is changed while nobody listens to it. Nodes of this kind never send it (bit 30). */
+/*
+ * An identifier is changed while nobody listens to it. Nodes of this kind never send it (bit 30).
+ */
 static uint32_t check_time_id(const struct servo *drive, uint32_t value)
 {
     uint32_t old = drive->objects.communication.time_cob_id;
@@ -207,8 +209,8 @@ static uint32_t check_number(const struct servo *drive, const struct object_row 
 }
 
 /*
- * Objects 1010 and 1011. Stored values are those a reset brings back; whoever keeps them may fail, and then nothing has
- * changed.
+ * Objects 1010 and 1011. Stored values are those a reset brings back; whoever keeps them may fail,
+ * and then nothing has changed.
  */
 static uint32_t set_stored(struct servo *drive, const struct drive_objects *values)
 {

@@ -313,7 +313,9 @@ static bool is_due_at_sync(struct drive_pdo *pdo, uint8_t sync_start, const stru
     return true;
 }
 
-/* The first TPDO, which has the statusword, is the last to be sent: then all of this SYNC is said. */
+/*
+ * The first TPDO, which has the statusword, is the last to be sent: then all of this SYNC is said.
+ */
 void takt_servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
 {
     for (unsigned i = DRIVE_PDO_COUNT; i-- > 0;) {

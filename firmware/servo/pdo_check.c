@@ -1,5 +1,6 @@
 /*
- * What may be written to the objects of PDOs (CiA 301, 7.5.2.35 ... 38): told before it takes effect.
+ * What may be written to the objects of PDOs (CiA 301, 7.5.2.35 ... 38): told before it takes
+ * effect.
  */
 #include "canopen/node.h"
 #include "servo/servo_private.h"

@@ -9,8 +9,9 @@
 #define INVERSE_STEPS 16
 
 /*
- * In a piece of unit length the slope differs from that of its chord by |M| / 2 at most, M the greater second derivative at its ends; a
- * table that is read 0.2 steps beyond its end (edge.h) by another 0.2 1.2 |M|.
+ * In a piece of unit length the slope differs from that of its chord by |M| / 2 at most, M the
+ * greater second derivative at its ends; a table that is read 0.2 steps beyond its end (edge.h) by
+ * another 0.2 1.2 |M|.
  */
 static bool is_flat(const struct pitch *pitch)
 {

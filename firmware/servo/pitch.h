@@ -1,7 +1,7 @@
 /*
- * The error of pitch of a drive's screw or gear: what is to be added to where the motor says the axis is, at evenly spaced
- * positions of the motor. Between them a cubic spline, so that an axis that follows it has bounded jerk; beyond them the
- * value of the end holds.
+ * The error of pitch of a drive's screw or gear: what is to be added to where the motor says the
+ * axis is, at evenly spaced positions of the motor. Between them a cubic spline, so that an axis
+ * that follows it has bounded jerk; beyond them the value of the end holds.
  */
 #ifndef TAKT_SERVO_PITCH_H
 #define TAKT_SERVO_PITCH_H
@@ -11,8 +11,8 @@
 #include <stdbool.h>
 
 /*
- * The steepest that it may be. A loop that is closed behind it has its gains changed by as much, so by a tenth at most; real
- * screws are a hundred times better.
+ * The steepest that it may be. A loop that is closed behind it has its gains changed by as much, so
+ * by a tenth at most; real screws are a hundred times better.
  */
 #define PITCH_STEEPEST_RATIO 0.1
 
@@ -24,7 +24,10 @@ struct pitch {
     double second_mm[DRIVE_PITCH_POINTS]; /* second derivative, by steps */
 };
 
-/* All but the second derivatives is set. False: it is steeper than PITCH_STEEPEST_RATIO anywhere, or too short; it has no points then. */
+/*
+ * All but the second derivatives is set. False: it is steeper than PITCH_STEEPEST_RATIO anywhere,
+ * or too short; it has no points then.
+ */
 bool takt_pitch_make(struct pitch *pitch);
 
 /* x = y + K(y): what K is where the motor says y. */

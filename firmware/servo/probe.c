@@ -1,6 +1,7 @@
 /*
- * Touch probes (CiA 402-2, 60B8 ... 60BD): the position is latched at the very moment at which the input changes, or at
- * which the index pulse comes, as the hardware of a drive does it; within a cycle the motor runs evenly.
+ * Touch probes (CiA 402-2, 60B8 ... 60BD): the position is latched at the very moment at which the
+ * input changes, or at which the index pulse comes, as the hardware of a drive does it; within a
+ * cycle the motor runs evenly.
  */
 #include "base/assert.h"
 #include "servo/servo_private.h"
@@ -81,7 +82,10 @@ void takt_servo_begin_probe(struct servo *drive)
     drive->probe.pulses = drive->loop.sense.pulses;
 }
 
-/* A pulse is where the motor's angle is 0: its rising and its falling edge are one. The last one of a cycle counts. */
+/*
+ * A pulse is where the motor's angle is 0: its rising and its falling edge are one. The last one of
+ * a cycle counts.
+ */
 void takt_servo_run_probe(struct servo *drive)
 {
     const struct motor_sense *sense = &drive->loop.sense;

@@ -160,7 +160,10 @@ void takt_servo_take_controlword(struct servo *drive, uint16_t controlword)
 /* As object 6502 has them: all but 2, velocity for converters, and 5, which is none. */
 #define MODES_WRITTEN 0x3EDu
 
-/* Object 6502 says which of those that are written here; a sheet without it, or with an empty one, has them all. */
+/*
+ * Object 6502 says which of those that are written here; a sheet without it, or with an empty one,
+ * has them all.
+ */
 bool takt_servo_has_mode(const struct servo *drive, int8_t mode)
 {
     bool has_index;

@@ -1,9 +1,10 @@
 /*
- * A servo drive: a CANopen node (CiA 301) with the drive profile CiA 402-2, its position and velocity loop, and an I/O node
- * (CiA 401) in its place. It knows ports, neither a bus nor a motor: whoever owns it hands in the frames and the time.
+ * A servo drive: a CANopen node (CiA 301) with the drive profile CiA 402-2, its position and
+ * velocity loop, and an I/O node (CiA 401) in its place. It knows ports, neither a bus nor a motor:
+ * whoever owns it hands in the frames and the time.
  *
- * Modes of operation: profile position, velocity and torque, homing, interpolated position, cyclic synchronous position,
- * velocity and torque.
+ * Modes of operation: profile position, velocity and torque, homing, interpolated position, cyclic
+ * synchronous position, velocity and torque.
  */
 #ifndef TAKT_SERVO_SERVO_H
 #define TAKT_SERVO_SERVO_H
@@ -31,15 +32,15 @@
 struct servo_config {
     uint8_t node; /* 1 ... 127 */
     bool is_fd;   /* its bus is CAN FD: PDOs of up to 64 bytes */
-    bool
-        is_io; /* no drive but an I/O node (CiA 401), of takt_dictionary_io: nothing of the motor counts */
-    bool
-        is_nameless; /* it has no node id before it gets one by LSS; node is then its serial number alone */
+    /* no drive but an I/O node (CiA 401), of takt_dictionary_io: nothing of the motor counts */
+    bool is_io;
+    /* it has no node id before it gets one by LSS; node is then its serial number alone */
+    bool is_nameless;
     bool is_absolute; /* the encoder knows the axis's position at power-on: it is homed */
-    uint16_t
-        closed; /* inputs of an I/O node that are high for good; the others are those of its outputs */
-    double
-        increments_per_mm; /* position units of the drive per mm or rad; < 0: its motor turns the other way */
+    /* inputs of an I/O node that are high for good; the others are those of its outputs */
+    uint16_t closed;
+    /* position units of the drive per mm or rad; < 0: its motor turns the other way */
+    double increments_per_mm;
     double velocity_units_per_mm_s; /* its units of velocity; 0: position units in a second */
     uint32_t cycle_us; /* between two targets at power-on (object 60C2); 0: a millisecond */
     uint32_t boot_us;  /* from a reset to the boot-up message */
@@ -71,8 +72,9 @@ struct servo;
 #include "servo/servo_state.h"
 
 /*
- * Switches the drive on; it has not booted yet. config is copied. target: its RPDO2, see canopen/target_pdo.h; NULL: what
- * the dictionary says. The ports must stay usable as long as the drive; motor: NULL for an I/O node.
+ * Switches the drive on; it has not booted yet. config is copied. target: its RPDO2, see
+ * canopen/target_pdo.h; NULL: what the dictionary says. The ports must stay usable as long as the
+ * drive; motor: NULL for an I/O node.
  */
 void takt_servo_init(struct servo *drive, const struct servo_config *config,
                      const struct pdo *target, const struct can_port *port,
@@ -83,8 +85,8 @@ void takt_servo_observe(struct servo *drive, const struct drive_observer *observ
 void takt_servo_set_eds(struct servo *drive, const char *eds, size_t length);
 
 /*
- * Who is to keep what object 1010 stores, and 1011 takes back, beyond the drive's own life; drive_store.h has a form for
- * that. Without one it lives as long as the drive.
+ * Who is to keep what object 1010 stores, and 1011 takes back, beyond the drive's own life;
+ * drive_store.h has a form for that. Without one it lives as long as the drive.
  */
 void takt_servo_keep(struct servo *drive, const struct drive_keeper *keeper);
 
@@ -93,7 +95,9 @@ void takt_servo_meddle(struct servo *drive, const struct servo_meddler *meddler)
 
 /* The power stage says that it fails: emergency, fault reaction, fault. */
 void takt_servo_fail(struct servo *drive, uint16_t code, uint8_t error_register);
-/* Sends an emergency, notes it in the history, and goes on. error_register: what it adds to 1001. */
+/*
+ * Sends an emergency, notes it in the history, and goes on. error_register: what it adds to 1001.
+ */
 void takt_servo_send_emergency(struct servo *drive, uint16_t code, uint8_t error_register);
 /* As NMT's reset of the node. */
 void takt_servo_reboot(struct servo *drive);
@@ -112,7 +116,9 @@ static inline bool servo_accepts(const struct servo *drive, const struct can_fra
 
 /* A frame has come; the drive may send answers. */
 void takt_servo_on_frame(struct servo *drive, const struct can_frame *frame);
-/* The same where the time on the bus is known: targets behind the window of object 1007 are none. */
+/*
+ * The same where the time on the bus is known: targets behind the window of object 1007 are none.
+ */
 void takt_servo_on_frame_at(struct servo *drive, const struct can_frame *frame, uint64_t time_ns);
 
 /*
@@ -122,8 +128,8 @@ void takt_servo_on_frame_at(struct servo *drive, const struct can_frame *frame, 
 void takt_servo_step(struct servo *drive, uint32_t cycle_ns);
 
 /*
- * After a step: within it, when so much of it had passed, 0 ... 1, the input of the touch probes became so. A level that it
- * has already is no edge.
+ * After a step: within it, when so much of it had passed, 0 ... 1, the input of the touch probes
+ * became so. A level that it has already is no edge.
  */
 void takt_servo_touch(struct servo *drive, bool touches, double ratio);
 /* The position that the drive had then by its encoder, unrounded. */
@@ -134,7 +140,10 @@ enum nmt_state takt_servo_get_nmt_state(const struct servo *drive);
 /* What the controller says of the time between two SYNCs, object 1006, else 60C2; 0: nothing. */
 uint32_t takt_servo_get_sync_period_us(const struct servo *drive);
 
-/* The shortest time without a heartbeat (1016) or a guarding frame (100C) that it takes, ms; 0: it watches none. */
+/*
+ * The shortest time without a heartbeat (1016) or a guarding frame (100C) that it takes, ms; 0: it
+ * watches none.
+ */
 uint32_t takt_servo_get_watched_ms(const struct servo *drive);
 
 /* The frame is SYNC to this drive (object 1005). */

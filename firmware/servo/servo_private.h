@@ -105,8 +105,8 @@ void takt_servo_clear_history(struct servo *drive);
 /* Bytes of the longest frame that it takes and sends. */
 unsigned takt_servo_longest_frame(const struct servo *drive);
 /*
- * The row of a mapping entry, NULL for a dummy. False, and the abort code: there is no such object, of that length, that may
- * travel this way.
+ * The row of a mapping entry, NULL for a dummy. False, and the abort code: there is no such object,
+ * of that length, that may travel this way.
  */
 bool takt_servo_find_mapped(const struct servo *drive, uint32_t entry, enum object_flag direction,
                             const struct object_row **row, uint32_t *code);
@@ -150,7 +150,10 @@ void takt_servo_derive_torque(struct servo *drive);
 
 /* ---- mechanics.c: what is taken back of the mechanics ---- */
 
-/* What of objects 2010 and 2011 the motor's readings are corrected by; they are so at once, and the command with them. */
+/*
+ * What of objects 2010 and 2011 the motor's readings are corrected by; they are so at once, and the
+ * command with them.
+ */
 void takt_servo_derive_compensation(struct servo *drive);
 /* Objects 2010 and 2011: may they get this value now? */
 uint32_t takt_servo_check_compensation(const struct servo *drive, const struct object_row *row,

@@ -6,7 +6,10 @@
 
 #define SERVO_EMCY_QUEUE 8
 
-/* A PDO as it is worked with; made from the objects whenever they change. What every cycle looks at comes first. */
+/*
+ * A PDO as it is worked with; made from the objects whenever they change. What every cycle looks at
+ * comes first.
+ */
 struct drive_pdo {
     bool is_valid;
     uint16_t cob_id;
@@ -40,7 +43,8 @@ struct drive_setpoints {
 /* Layer setting services. */
 struct drive_lss {
     uint8_t node,
-        stored; /* from the next reset of the communication on, and of the node; LSS_NO_NODE: none */
+        /* from the next reset of the communication on, and of the node; LSS_NO_NODE: none */
+        stored;
     bool is_nameless;                     /* it has no node id: it hears and says nothing else */
     bool configures;                      /* state "configuration" */
     uint8_t matched, identified, scanned; /* parts of the identity so far */
@@ -70,8 +74,8 @@ struct drive_homing {
     enum drive_homing_phase phase;
     int8_t method; /* of the homing under way */
     bool is_homed;
-    int8_t
-        search; /* direction under way, of the drive; the other one after the first end of the axis */
+    /* direction under way, of the drive; the other one after the first end of the axis */
+    int8_t search;
     bool was_active;         /* the switch, in the cycle before */
     uint64_t push_ns;        /* that the motor has stood with all the torque it takes */
     uint32_t pulses;         /* that have been seen */
@@ -171,7 +175,9 @@ struct servo {
     size_t eds_length;
     struct drive_lss lss;
 
-    /* What a reset brings back, of power-on or stored by object 1010; process values do not count. */
+    /*
+     * What a reset brings back, of power-on or stored by object 1010; process values do not count.
+     */
     struct drive_objects stored, initial;
     struct drive_keeper keeper;
 };

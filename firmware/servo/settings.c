@@ -1,5 +1,6 @@
 /*
- * Values of the objects that the machine makes at power-on, and what motion needs to know of the settings.
+ * Values of the objects that the machine makes at power-on, and what motion needs to know of the
+ * settings.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -139,7 +140,10 @@ void takt_servo_init_objects(struct servo *drive)
         take_data_sheet(drive);
 }
 
-/* Object 607E has been changed in this bit; as it was at power-on it is part of what the machine says. */
+/*
+ * Object 607E has been changed in this bit; as it was at power-on it is part of what the machine
+ * says.
+ */
 static bool is_turned(const struct servo *drive, unsigned bit)
 {
     return (drive->objects.settings.polarity ^ drive->initial.settings.polarity) & bit;
@@ -165,7 +169,9 @@ static void rescale(struct servo *drive)
     drive->increments_per_mm = polarity * increments_per_mm;
 }
 
-/* A value of the machine that its object could not hold is used as long as nobody has changed it. */
+/*
+ * A value of the machine that its object could not hold is used as long as nobody has changed it.
+ */
 static double in_mm(const struct servo *drive, uint32_t value, uint32_t initial, double machine,
                     double per_mm)
 {

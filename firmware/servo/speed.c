@@ -1,6 +1,7 @@
 /*
- * Modes of velocity and torque: profile velocity (3) and profile torque (4), which go to their target by ramps, and cyclic
- * synchronous velocity (9) and torque (10), whose targets the controller makes. The position loop rests.
+ * Modes of velocity and torque: profile velocity (3) and profile torque (4), which go to their
+ * target by ramps, and cyclic synchronous velocity (9) and torque (10), whose targets the
+ * controller makes. The position loop rests.
  */
 #include "base/assert.h"
 #include "base/maths.h"
@@ -66,8 +67,8 @@ void takt_servo_run_cyclic_velocity(struct servo *drive, uint32_t cycle_ns)
 /* ---- Torque ---- */
 
 /*
- * Torque in parts of the rated one, as the motor turns. At its highest speed (6080) a motor gets none that speeds it
- * up.
+ * Torque in parts of the rated one, as the motor turns. At its highest speed (6080) a motor gets
+ * none that speeds it up.
  */
 static void push(struct servo *drive, double ratio, uint32_t cycle_ns)
 {

@@ -15,8 +15,9 @@ static bool is_mode(const struct shape_mode *mode)
 }
 
 /*
- * Where an axis accelerates by a, a mode is left behind by part a / w^2, out of the bend of a way. A train pulls its way
- * into the bend by a/2 of its spread (train.h). Equal where the spread is 2 part / w^2, of several modes their sum.
+ * Where an axis accelerates by a, a mode is left behind by part a / w^2, out of the bend of a way.
+ * A train pulls its way into the bend by a/2 of its spread (train.h). Equal where the spread is 2
+ * part / w^2, of several modes their sum.
  */
 static double wanted_spread(const struct shape_mode mode[SHAPE_MODES], double cycle_s)
 {
@@ -45,8 +46,9 @@ static double half_period(const struct shape_mode mode[SHAPE_MODES], double cycl
 }
 
 /*
- * Impulses -m, 1 + 2 m, -m at distances of D add -2 m D^2 to the spread, and change neither the sum nor the mean; what the
- * modes are left with stays 0. The longer D, the less is below 0, and the longer it takes.
+ * Impulses -m, 1 + 2 m, -m at distances of D add -2 m D^2 to the spread, and change neither the sum
+ * nor the mean; what the modes are left with stays 0. The longer D, the less is below 0, and the
+ * longer it takes.
  */
 static void keep_way(struct train *t, const struct shape_mode mode[SHAPE_MODES], double cycle_s)
 {
@@ -203,8 +205,9 @@ const struct point *takt_shape_input(const struct shape *s)
 /* -- limits -- */
 
 /*
- * With n what is below 0, the rest 1 + n, a mean is at most (1 + n) of the highest and -n of the lowest that comes in: by n times
- * their distance above the highest. Over the train that distance is at most what the next derivative lets it be.
+ * With n what is below 0, the rest 1 + n, a mean is at most (1 + n) of the highest and -n of the
+ * lowest that comes in: by n times their distance above the highest. Over the train that distance
+ * is at most what the next derivative lets it be.
  *
  *     J = j (1 + 2 n)        A = a + n min(2 a, j T)        V = v + n min(2 v, a T)
  */

@@ -1,9 +1,10 @@
 /*
- * Setpoints of all axes, so shaped that the modes between motors and tool are at rest when the motors are, and that the tool
- * is on the way it was sent on. Behind correction: what comes out is what drives get.
+ * Setpoints of all axes, so shaped that the modes between motors and tool are at rest when the
+ * motors are, and that the tool is on the way it was sent on. Behind correction: what comes out is
+ * what drives get.
  *
- * Each axis has a train of impulses (train.h) that meets its modes. All axes are delayed by the same time, so that none runs
- * ahead of another. See README.md for the formulas.
+ * Each axis has a train of impulses (train.h) that meets its modes. All axes are delayed by the
+ * same time, so that none runs ahead of another. See README.md for the formulas.
  */
 #ifndef TAKT_SHAPE_SHAPE_H
 #define TAKT_SHAPE_SHAPE_H

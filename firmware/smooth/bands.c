@@ -7,7 +7,9 @@
 /* Units that a sample moves in one step at most. */
 #define STEP_MAX 1048576.0f
 
-/* Products of the rows (1 4 1)/6, (1 -2 1), (-1 3 -3 1) with themselves, shifted by 0 to 3 samples. */
+/*
+ * Products of the rows (1 4 1)/6, (1 -2 1), (-1 3 -3 1) with themselves, shifted by 0 to 3 samples.
+ */
 static const float near_products[4] = {18.0f / 36.0f, 8.0f / 36.0f, 1.0f / 36.0f, 0.0f};
 static const float second_products[4] = {6.0f, -4.0f, 1.0f, 0.0f};
 static const float third_products[4] = {20.0f, -15.0f, 6.0f, -1.0f};
@@ -44,8 +46,8 @@ static void add_corner(struct relax *x, const struct window *w, unsigned group, 
 }
 
 /*
- * L D L': the multipliers take the bands' places, 1/D that of the diagonal. What this does to fixed samples behind is not
- * looked at.
+ * L D L': the multipliers take the bands' places, 1/D that of the diagonal. What this does to fixed
+ * samples behind is not looked at.
  */
 static void factor(struct relax *x, const struct window *w, unsigned group)
 {

@@ -1,5 +1,6 @@
 /*
- * The linear system of the relaxation: symmetric, a diagonal and three bands on each side of it, for each group of lanes.
+ * The linear system of the relaxation: symmetric, a diagonal and three bands on each side of it,
+ * for each group of lanes.
  */
 #ifndef TAKT_SMOOTH_BANDS_H
 #define TAKT_SMOOTH_BANDS_H

@@ -9,8 +9,9 @@ static float way(float v, float a, float j, float t)
 }
 
 /*
- * From a deceleration b to p and back to none, p^2 = J (v - to) + b^2 / 2 where A does not bind: the times of its rise and
- * fall are (p - b)/J and p/J, and what is left of the change of feed is braked by p.
+ * From a deceleration b to p and back to none, p^2 = J (v - to) + b^2 / 2 where A does not bind:
+ * the times of its rise and fall are (p - b)/J and p/J, and what is left of the change of feed is
+ * braked by p.
  */
 static float way_braked(const struct braking_limits *l, float v, float b, float to)
 {

@@ -15,8 +15,8 @@ struct braking_limits {
 };
 
 /*
- * The way from a feed and an acceleration until the feed is another one, at most as high, with no acceleration: the one
- * there is ends first, then braking begins. 0 where braking need only end.
+ * The way from a feed and an acceleration until the feed is another one, at most as high, with no
+ * acceleration: the one there is ends first, then braking begins. 0 where braking need only end.
  */
 float takt_braking_way(const struct braking_limits *l, float feed, float acceleration, float to);
 

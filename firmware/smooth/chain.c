@@ -54,8 +54,8 @@ static unsigned axes_of(const struct smooth *s, const struct curve *curve)
 }
 
 /*
- * One interval serves all of a chain: where an axis begins to move that needs a longer one, another chain begins, and that
- * takes it for all of these axes.
+ * One interval serves all of a chain: where an axis begins to move that needs a longer one, another
+ * chain begins, and that takes it for all of these axes.
  */
 static bool parts(struct smooth *s, const struct curve *curve)
 {
@@ -85,7 +85,10 @@ bool takt_smooth_has_room(const struct smooth *s)
     return !s->open || (!s->finished && takt_route_has_room(&s->route));
 }
 
-/* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
+/*
+ * How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to
+ * smoothing.
+ */
 static double merged_within(const struct move *move)
 {
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);

@@ -15,7 +15,10 @@ static const float cycles_apart = (float)JUNCTION_CYCLES_APART;
 static const float least_cycles = (float)JUNCTION_LEAST_CYCLES;
 static const float worth = (float)JUNCTION_WORTH;
 
-/* A curved element that is no arc is gone along in lines that leave it by this part of the tolerance. */
+/*
+ * A curved element that is no arc is gone along in lines that leave it by this part of the
+ * tolerance.
+ */
 #define STRAIGHT_PART 0.02f
 
 /* What bounds the exact path on an element: mm of route and s. */
@@ -47,7 +50,10 @@ static void bound_line(const struct route *r, const struct smooth_limits *machin
     }
 }
 
-/* The highest feed at a junction: D v / cycle^2 + 3/4 K v^2 / cycle within a part of J, D v / cycle of A (plan/junction.c). */
+/*
+ * The highest feed at a junction: D v / cycle^2 + 3/4 K v^2 / cycle within a part of J, D v / cycle
+ * of A (plan/junction.c).
+ */
 static float alone_feed(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                         float reach)
 {
@@ -83,7 +89,10 @@ static float length_of(const struct route *r, uint32_t index)
     return (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
 }
 
-/* May the junction at the start of an element be passed, and take of the jerk beside it? What came before may be forgotten. */
+/*
+ * May the junction at the start of an element be passed, and take of the jerk beside it? What came
+ * before may be forgotten.
+ */
 static bool may_pass(const struct route *r, const struct smooth_limits *machine, uint32_t index)
 {
     const float cycle = (float)machine->cycle_s;
@@ -108,7 +117,9 @@ struct arc_limits {
     float radius;
 };
 
-/* What axes allow along a curved element: those in its plane may be along it, of others their part. */
+/*
+ * What axes allow along a curved element: those in its plane may be along it, of others their part.
+ */
 static float along_curved(const struct route *r, const double limit[], uint32_t index,
                           const float k[])
 {
@@ -136,7 +147,10 @@ static void bound_ramps(const struct arc_limits *b, struct course *c)
     c->jerk = ramp_along * b->jerk - c->feed * normal / b->radius;
 }
 
-/* v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A: of the machine's limits, which a smoothed curve may not have all of. */
+/*
+ * v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A: of the machine's limits, which a smoothed
+ * curve may not have all of.
+ */
 static void bound_curved(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                          struct course *c)
 {
@@ -172,7 +186,10 @@ static struct course course_of(const struct route *r, const struct smooth_limits
     return c;
 }
 
-/* Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not reached. */
+/*
+ * Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not
+ * reached.
+ */
 static float ramp_time(float change, float a, float j)
 {
     return change * j >= a * a ? change / a + a / j : 2.0f * single_sqrt(change / j);
@@ -233,8 +250,8 @@ static float lost(float low, float high, float a)
 }
 
 /*
- * With ramps of acceleration a, rounded over a window of cycles of a/J, times what the law makes of it: the window is lost
- * once, but for what is gone in it at both ends (plan/span.c).
+ * With ramps of acceleration a, rounded over a window of cycles of a/J, times what the law makes of
+ * it: the window is lost once, but for what is gone in it at both ends (plan/span.c).
  */
 static float time_with(const struct route *r, const struct smooth_limits *machine,
                        const struct span *s, float a)
@@ -259,8 +276,8 @@ static float time_with(const struct route *r, const struct smooth_limits *machin
 }
 
 /*
- * The best acceleration for ramps by a law of w windows, from rest to rest: of v/a + w a/j it is sqrt(v j/w), and of
- * 2 sqrt(L/a) + w a/j, where the feed is not reached, cbrt(L (j/w)^2).
+ * The best acceleration for ramps by a law of w windows, from rest to rest: of v/a + w a/j it is
+ * sqrt(v j/w), and of 2 sqrt(L/a) + w a/j, where the feed is not reached, cbrt(L (j/w)^2).
  */
 static float least_time(const struct route *r, const struct smooth_limits *machine,
                         const struct span *s)
@@ -324,8 +341,8 @@ static double straight_end(const struct route *r, uint32_t element, double at_mm
 }
 
 /*
- * Must the axes be on it before they go along it? Of an arc so that it is one; where rotary axes move, because a feed counts the
- * way of the linear ones alone.
+ * Must the axes be on it before they go along it? Of an arc so that it is one; where rotary axes
+ * move, because a feed counts the way of the linear ones alone.
  */
 static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
 {

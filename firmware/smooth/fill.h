@@ -7,13 +7,19 @@
 /* Fills the window; false when more of the route must be known first. */
 bool takt_fill(struct smooth *s);
 
-/* From rest: another part of the tolerance, the interval and nominal feeds for it; the window is empty but for its start. */
+/*
+ * From rest: another part of the tolerance, the interval and nominal feeds for it; the window is
+ * empty but for its start.
+ */
 void takt_fill_within(struct smooth *s, float part);
 
 /* Where the axes stand, and nothing is ready: whatever ends there, a curve may begin anew. */
 void takt_fill_begin_anew(struct smooth *s);
 
-/* May these axes, by bit, move too: has none of them longer ramps, or must change its rate more slowly? */
+/*
+ * May these axes, by bit, move too: has none of them longer ramps, or must change its rate more
+ * slowly?
+ */
 bool takt_fill_fits(const struct smooth *s, unsigned axes);
 
 #endif

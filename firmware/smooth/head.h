@@ -1,5 +1,6 @@
 /*
- * Samples at a window's beginning as they were proved: what is gone to the end of where no way leads on.
+ * Samples at a window's beginning as they were proved: what is gone to the end of where no way
+ * leads on.
  */
 #ifndef TAKT_SMOOTH_HEAD_H
 #define TAKT_SMOOTH_HEAD_H

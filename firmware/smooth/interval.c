@@ -5,13 +5,17 @@
 #include "smooth/window.h"
 
 /*
- * Nominal time between samples, as a part of the time that a way of the tolerance takes: cbrt(P/J) where jerk binds,
- * sqrt(P/A) where acceleration does, whichever is longer. Found on machines of P J^2/A^3 = 4e-4 ... 640: README.md.
+ * Nominal time between samples, as a part of the time that a way of the tolerance takes: cbrt(P/J)
+ * where jerk binds, sqrt(P/A) where acceleration does, whichever is longer. Found on machines of P
+ * J^2/A^3 = 4e-4 ... 640: README.md.
  */
 #define INTERVAL_OF_JERK         0.7
 #define INTERVAL_OF_ACCELERATION 0.9
 
-/* A window is at least this part of the time in which the slowest axis reaches its velocity: README.md. */
+/*
+ * A window is at least this part of the time in which the slowest axis reaches its velocity:
+ * README.md.
+ */
 #define WINDOW_OF_RAMP 0.5
 
 /* Of a chain's reach at most this part is cut at a corner: of more tolerance it has no use. */
@@ -20,7 +24,9 @@
 /* A chain has so many intervals at least at its nominal feed before it needs shorter ones. */
 #define INTERVALS_LEAST 16.0
 
-/* How far a route leads away from where it begins, in the direction of an axis; of bends no less. */
+/*
+ * How far a route leads away from where it begins, in the direction of an axis; of bends no less.
+ */
 static double reach_of(const struct route *r)
 {
     double start[AXIS_COUNT];
@@ -41,7 +47,9 @@ static double reach_of(const struct route *r)
     return most;
 }
 
-/* The velocity that an axis reaches at most on a way of twice the reach: sqrt(2 L A), cbrt(L^2 J). */
+/*
+ * The velocity that an axis reaches at most on a way of twice the reach: sqrt(2 L A), cbrt(L^2 J).
+ */
 static double velocity_within(const struct smooth_limits *limits, int axis, double reach_mm)
 {
     const double way = reach_mm / smooth_weight(axis);
@@ -51,7 +59,10 @@ static double velocity_within(const struct smooth_limits *limits, int axis, doub
                                takt_maths_cbrt(way * way * limits->jerk_mm_s3[axis])));
 }
 
-/* Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not reached. */
+/*
+ * Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not
+ * reached.
+ */
 static double longest_ramp(const struct smooth_limits *limits, unsigned axes, double reach_mm)
 {
     double longest = 0.0;
@@ -99,8 +110,9 @@ static double interval_within(const struct smooth_limits *machine, const struct 
 }
 
 /*
- * Where all of a chain is known it may be so short that it has no use for all of the tolerance, nor its axes for their velocity.
- * Its intervals are the shorter then, but no more than it takes to have a few at the nominal feed: a slow one gains nothing by more.
+ * Where all of a chain is known it may be so short that it has no use for all of the tolerance, nor
+ * its axes for their velocity. Its intervals are the shorter then, but no more than it takes to
+ * have a few at the nominal feed: a slow one gains nothing by more.
  */
 double takt_interval_of(const struct smooth_limits *machine, const struct route *r, unsigned axes,
                         double tolerance_mm, bool whole)

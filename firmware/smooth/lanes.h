@@ -1,6 +1,7 @@
 /*
- * Values of several axes side by side, on which one operation works at once: a processor with vector registers does them
- * together, another one after the other, with the same bits. A vector type of gcc and clang.
+ * Values of several axes side by side, on which one operation works at once: a processor with
+ * vector registers does them together, another one after the other, with the same bits. A vector
+ * type of gcc and clang.
  */
 #ifndef TAKT_SMOOTH_LANES_H
 #define TAKT_SMOOTH_LANES_H

@@ -6,12 +6,14 @@
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
 #define CHORD_PART 0.25
 
-/* Acceleration at a corner within the tolerance, in parts of what jerk alone comes to, cbrt(P J^2). */
+/*
+ * Acceleration at a corner within the tolerance, in parts of what jerk alone comes to, cbrt(P J^2).
+ */
 #define CORNER_PART 1.5
 
 /*
- * Between -V and V an axis comes to sqrt(2 V J) at most, rising and falling by J: what it could do beyond that is of no use, and
- * nothing is to depend on it.
+ * Between -V and V an axis comes to sqrt(2 V J) at most, rising and falling by J: what it could do
+ * beyond that is of no use, and nothing is to depend on it.
  */
 static void limit_reached(struct smooth_limits *limits)
 {
@@ -23,8 +25,8 @@ static void limit_reached(struct smooth_limits *limits)
 }
 
 /*
- * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the tolerance, less acceleration is
- * used. At a corner there is no more than jerk leaves time for.
+ * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the
+ * tolerance, less acceleration is used. At a corner there is no more than jerk leaves time for.
  */
 static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
 {

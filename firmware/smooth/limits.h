@@ -6,7 +6,9 @@
 
 #include "smooth/lanes.h"
 
-/* Elements of the programmed path that are known at one time, and how many of them may be curved. */
+/*
+ * Elements of the programmed path that are known at one time, and how many of them may be curved.
+ */
 #define SMOOTH_ELEMENTS_MAX 96
 #define SMOOTH_CURVED_MAX   32
 
@@ -31,15 +33,15 @@ struct smooth_limits {
     double acceleration_mm_s2[AXIS_COUNT];
     double jerk_mm_s3[AXIS_COUNT];
     double cycle_s; /* control cycle */
-    double
-        windows; /* all windows of its ramp law together, as a multiple of the first one (plan/ramp_profile.h) */
-    double
-        chord_mm; /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
+    /* all windows of its ramp law together, as a multiple of the first one (plan/ramp_profile.h) */
+    double windows;
+    /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
+    double chord_mm;
 };
 
 /*
- * The tolerance is a distance over all axes, in which a degree counts like a millimetre: what one unit of an axis
- * (mm, rad) counts.
+ * The tolerance is a distance over all axes, in which a degree counts like a millimetre: what one
+ * unit of an axis (mm, rad) counts.
  */
 #define SMOOTH_RAD_WEIGHT 57.29577951308232
 

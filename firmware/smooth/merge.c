@@ -22,7 +22,10 @@ static bool is_alike(const struct merge *m, const struct move *move, const struc
            m->move.contour_side == move->contour_side;
 }
 
-/* Place of p along the line from start to end, 0 ... 1, and how far it is beside it; weighted (limits.h). */
+/*
+ * Place of p along the line from start to end, 0 ... 1, and how far it is beside it; weighted
+ * (limits.h).
+ */
 static double place_beside(const struct point *start, const struct point *end,
                            const struct point *p, double *distance_mm)
 {

@@ -1,6 +1,7 @@
 /*
- * Merges lines that are nearly one (G64 Q): short lines of a programmed curve come closer together than their number of
- * digits can tell, and a few long elements let the smoother look farther ahead than many short ones.
+ * Merges lines that are nearly one (G64 Q): short lines of a programmed curve come closer together
+ * than their number of digits can tell, and a few long elements let the smoother look farther ahead
+ * than many short ones.
  */
 #ifndef TAKT_SMOOTH_MERGE_H
 #define TAKT_SMOOTH_MERGE_H
@@ -27,7 +28,10 @@ struct merge {
 
 void takt_merge_open(struct merge *m, const struct move *move, uint32_t number,
                      const struct curve *curve);
-/* True when the line now reaches to the end of this motion, passing every programmed end within within_mm. */
+/*
+ * True when the line now reaches to the end of this motion, passing every programmed end within
+ * within_mm.
+ */
 bool takt_merge_take(struct merge *m, const struct move *move, uint32_t number,
                      const struct curve *curve, double within_mm);
 

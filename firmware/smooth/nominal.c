@@ -3,13 +3,18 @@
 #include "base/assert.h"
 #include "smooth/single.h"
 
-/* Part of the axes' acceleration and jerk for the nominal feed along the path; smoothing needs the rest to round its ramps. */
+/*
+ * Part of the axes' acceleration and jerk for the nominal feed along the path; smoothing needs the
+ * rest to round its ramps.
+ */
 #define ALONG 0.95f
 
 /* Part of the axes' limits for the curvature of arcs. */
 #define CURVED 0.9f
 
-/* A corner may use the tolerance on both sides: the curve swings out before it and cuts in at it. */
+/*
+ * A corner may use the tolerance on both sides: the curve swings out before it and cuts in at it.
+ */
 #define SIDES 2.0f
 
 /* Where directions differ by less, rounding of them is what differs. */
@@ -99,8 +104,9 @@ void takt_nominal_set(struct route_element *e, const struct curve *curve, float 
 }
 
 /*
- * A change of direction d, rounded over w mm to both sides with curvature that rises and falls evenly, bends the path by
- * d/w at most and leaves the corner by |d| w / 6: v <= sqrt(A w/|d_i|), cbrt(J w^2/|d_i|) on every axis.
+ * A change of direction d, rounded over w mm to both sides with curvature that rises and falls
+ * evenly, bends the path by d/w at most and leaves the corner by |d| w / 6: v <= sqrt(A w/|d_i|),
+ * cbrt(J w^2/|d_i|) on every axis.
  */
 static float feed_over(const struct route_slots *slots, const float d[], float w_mm)
 {
@@ -162,8 +168,9 @@ static bool widen(const struct route *r, struct surroundings *s)
 }
 
 /*
- * The highest feed at the start of an element: the best of all widths over which the corner may be rounded. Many small
- * corners in a row are one bend, and some that go to and fro nearly none: so the directions are also compared farther off.
+ * The highest feed at the start of an element: the best of all widths over which the corner may be
+ * rounded. Many small corners in a row are one bend, and some that go to and fro nearly none: so
+ * the directions are also compared farther off.
  */
 static float corner_feed(struct route *r, uint32_t index)
 {

@@ -1,6 +1,6 @@
 /*
- * The nominal feed of a route: where samples are first put. It needs not be exact, only near to what can be done: what
- * smoothing finds too fast or too slow is timed anew (timing.h).
+ * The nominal feed of a route: where samples are first put. It needs not be exact, only near to
+ * what can be done: what smoothing finds too fast or too slow is timed anew (timing.h).
  */
 #ifndef TAKT_SMOOTH_NOMINAL_H
 #define TAKT_SMOOTH_NOMINAL_H
@@ -10,7 +10,10 @@
 /* Feed and acceleration of one element by its programmed feed and its curvature. */
 void takt_nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
                       const struct route *r);
-/* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
+/*
+ * The corner before the newest element, the corners that now have more behind them, and the
+ * energies of all.
+ */
 void takt_nominal_update(struct route *r);
 /* All corners anew, for another part of the tolerance. */
 void takt_nominal_again(struct route *r);

@@ -8,10 +8,15 @@
 /* A curved element is gone along in lines that leave it by this part of the tolerance at most. */
 #define CURVED_OFF 0.01f
 
-/* A line as long as its arc leaves its tangent stays within a quarter of that of it; half of it, lest the bend grows. */
+/*
+ * A line as long as its arc leaves its tangent stays within a quarter of that of it; half of it,
+ * lest the bend grows.
+ */
 #define CURVED_LEAVES (2.0f * CURVED_OFF)
 
-/* Lines of the route beside one chord, at most: what lies farther on is come to with the next ones. */
+/*
+ * Lines of the route beside one chord, at most: what lies farther on is come to with the next ones.
+ */
 #define LINKS_MAX 256
 
 /* Corners of lines that turn less are within the tube anyway. */
@@ -42,7 +47,10 @@ static bool is_there(struct parts p)
     return p.first <= p.last;
 }
 
-/* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the closest point, d away. */
+/*
+ * Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the
+ * closest point, d away.
+ */
 static struct parts near_point(const struct route *r, const float start[], const float way[],
                                const float point[], float within_mm)
 {
@@ -82,7 +90,8 @@ static float length_of(const struct route *r, const float way[])
 }
 
 /*
- * Where a link ends: on a line where nothing can be near the chord any more, on a bend where it is no longer straight.
+ * Where a link ends: on a line where nothing can be near the chord any more, on a bend where it is
+ * no longer straight.
  */
 static double link_end(const struct route *r, const struct order_chord *chord, struct link *l,
                        float chord_mm)
@@ -133,7 +142,10 @@ static void go_on(const struct route *r, struct link *l)
     memcpy(l->at, l->end, sizeof l->at);
 }
 
-/* Can the curve leave the start of an element aside? A bend of a few tolerances it can cut short within the tube. */
+/*
+ * Can the curve leave the start of an element aside? A bend of a few tolerances it can cut short
+ * within the tube.
+ */
 static bool is_corner(const struct route *r, uint32_t element)
 {
     return element < r->count &&
@@ -142,8 +154,8 @@ static bool is_corner(const struct route *r, uint32_t element)
 }
 
 /*
- * The parts of the chord at which the end of a link is passed, when its start is at some: not before that, and in the same
- * instant if no way may stay.
+ * The parts of the chord at which the end of a link is passed, when its start is at some: not
+ * before that, and in the same instant if no way may stay.
  */
 static struct parts pass_end(const struct route *r, const struct order_chord *chord,
                              const struct link *l, struct parts start)
@@ -166,7 +178,10 @@ static struct parts pass_end(const struct route *r, const struct order_chord *ch
     return is_there(near) ? near : nowhere;
 }
 
-/* Where there are too many, the lowest goes, unless the next lies beyond the place thought to be beside the curve. */
+/*
+ * Where there are too many, the lowest goes, unless the next lies beyond the place thought to be
+ * beside the curve.
+ */
 static void add_span(struct order *o, double first_mm, double last_mm, double believed_mm)
 {
     TAKT_ASSERT(first_mm <= last_mm && o->count <= ORDER_SPANS);
@@ -211,9 +226,10 @@ void takt_order_start(struct order *o, double at_mm, uint32_t element)
 }
 
 /*
- * Link after link: it is come to where the curve could be beside it before, or has passed its start. What of it lies within
- * the tolerance of the chord's end can be come to then; and its own end, where that is passed after its start. To have come to
- * the end of a link is not to have passed it.
+ * Link after link: it is come to where the curve could be beside it before, or has passed its
+ * start. What of it lies within the tolerance of the chord's end can be come to then; and its own
+ * end, where that is passed after its start. To have come to the end of a link is not to have
+ * passed it.
  */
 void takt_order_go(struct order *o, const struct route *r, const struct order_chord *chord)
 {

@@ -1,7 +1,8 @@
 /*
- * Does the curve follow the route in order? A way along both, never backwards, with no more than the tolerance between
- * them, is looked for while the curve is gone along in chords (Alt and Godau 1995): kept are the places of the route that
- * such a way can have come to when the curve has come so far. Where there is none, the order is broken or the tube left.
+ * Does the curve follow the route in order? A way along both, never backwards, with no more than
+ * the tolerance between them, is looked for while the curve is gone along in chords (Alt and Godau
+ * 1995): kept are the places of the route that such a way can have come to when the curve has come
+ * so far. Where there is none, the order is broken or the tube left.
  *
  *      curve ──a────────b──        places of the route within P of b:   [─────]        [──]
  *      route ══════╗   ╔═══        those that can be come to:              [──]
@@ -12,7 +13,10 @@
 
 #include "smooth/route.h"
 
-/* Stretches of route that can have been come to, apart from each other; of more, the lowest are given up. */
+/*
+ * Stretches of route that can have been come to, apart from each other; of more, the lowest are
+ * given up.
+ */
 #define ORDER_SPANS 4
 
 struct order_span {

@@ -9,8 +9,9 @@
 #define STANDING_CYCLES 3.0
 
 /*
- * At both ends of what begins and ends at rest by itself the axes stand, and the rate of nominal time rises and falls: over
- * a cycle, and the setpoint's over the windows W of its averages more. By then nominal time is at W/2.
+ * At both ends of what begins and ends at rest by itself the axes stand, and the rate of nominal
+ * time rises and falls: over a cycle, and the setpoint's over the windows W of its averages more.
+ * By then nominal time is at W/2.
  */
 static double ramp_s(const struct smooth *s)
 {

@@ -1,20 +1,21 @@
 /*
- * Looks for control points c that keep all of these (alternating directions, Boyd et al. 2011, section 5):
+ * Looks for control points c that keep all of these (alternating directions, Boyd et al. 2011,
+ * section 5):
  *     the curve at every sample (c[i-1] + 4 c[i] + c[i+1])/6 and at every corner within the tolerance of the route,
  *     |c[i-1] - 2 c[i] + c[i+1]| <= A d^2 and |c[i+2] - 3 c[i+1] + 3 c[i] - c[i-1]| <= J d^3 on every axis.
- * With K the rows, z the nearest values that are allowed, u the sums of what was missing, R the weights and a the
- * over-relaxation, one iteration is
+ * With K the rows, z the nearest values that are allowed, u the sums of what was missing, R the
+ * weights and a the over-relaxation, one iteration is
  *     c += (K' R K)^-1 K' R (z - u - K c),    t = a K c + (1 - a) z + u,    z = nearest(t),    u = t - z.
- * Only p = (1 - a) z + u is kept of z and u. The rows are counted so that R is 1 but for the tolerance. The matrix has
- * three bands beside its diagonal (bands.c). Where the timing asks for too much there is no such c; the last iterations
- * then favour the tolerance, and the timing is changed.
+ * Only p = (1 - a) z + u is kept of z and u. The rows are counted so that R is 1 but for the
+ * tolerance. The matrix has three bands beside its diagonal (bands.c). Where the timing asks for
+ * too much there is no such c; the last iterations then favour the tolerance, and the timing is
+ * changed.
  */
 #include "smooth/relax.h"
 
-#include "smooth/relax_corners.h"
-
 #include "base/assert.h"
 #include "smooth/bands.h"
+#include "smooth/relax_corners.h"
 #include "smooth/single.h"
 
 #include <string.h>
@@ -34,10 +35,10 @@
 /* Rows that count more than this, relative to the tolerance, would leave too few digits. */
 #define SCALE_MAX 300.0f
 
-/* Rows of second differences count this many times more than the others: along straights they alone find the ramps. */
+/* Rows of second differences count so much more: along straights they alone find ramps. */
 #define SECOND_COUNTS 2.0f
 
-/* What the axis of the least acceleration needs counts for all, up to this many times what that of the most needs. */
+/* The need of the axis of least acceleration counts for all, up to so many times the most's. */
 #define SECOND_SPAN 4.0f
 
 /* What a curved route may leave its tangent by for that to stand for it: s^2/2R, in tolerances. */
@@ -68,9 +69,9 @@ static void widen(struct relax_span *span, float per_near)
 }
 
 /*
- * What rows of second and third differences count is the same for all axes of a group, so that one matrix serves them all.
- * On machines that were tried, with axes up to ten times as quick as others, these came nearest to a matrix for each
- * axis.
+ * What rows of second and third differences count is the same for all axes of a group, so that one
+ * matrix serves them all. On machines that were tried, with axes up to ten times as quick as
+ * others, these came nearest to a matrix for each axis.
  */
 static void set_rows(struct relax_scale *s, const struct route *r, unsigned group,
                      float tolerance_mm, float d)
@@ -176,8 +177,8 @@ static inline lanes into_box(const struct relax_pass *pass, lanes k, lanes most,
 }
 
 /*
- * R (z - u - K c) of the curve at a sample. Where nothing is missing, z = t, that is t - now, and p = (1 - a) t;
- * elsewhere pull() has put other values in the place of t and now.
+ * R (z - u - K c) of the curve at a sample. Where nothing is missing, z = t, that is t - now, and p
+ * = (1 - a) t; elsewhere pull() has put other values in the place of t and now.
  */
 static inline lanes near_of(lanes *near, lanes now, float weight)
 {
@@ -194,8 +195,9 @@ static inline lanes left_of(lanes all, lanes change)
 }
 
 /*
- * K' R (z - u - K c) of all rows but corners. A third difference is that of two second ones, and (1 4 1)/6 is a sixth of
- * (1 -2 1) more than the sample itself: so what all rows of a sample ask for is first put together as second differences.
+ * K' R (z - u - K c) of all rows but corners. A third difference is that of two second ones, and (1
+ * 4 1)/6 is a sixth of (1 -2 1) more than the sample itself: so what all rows of a sample ask for
+ * is first put together as second differences.
  */
 static void gather(struct relax *x, const struct window *w, const struct relax_pass *pass,
                    unsigned group)
@@ -245,7 +247,7 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
     }
 }
 
-/* z of a place t beside sample i, where the route is not straight enough there: within the tolerance of its closest point. */
+/* z of t beside sample i where the route bends: within the tolerance of its closest point. */
 static void pull_to_route(const struct relax *x, const struct window *w, const struct route *r,
                           float tolerance_mm, unsigned i, lanes z[])
 {
@@ -298,7 +300,7 @@ static void measure_near(struct relax *x, const struct window *w, const struct r
     }
 }
 
-/* z of t beside a straight piece of route, in the tube of radius 1 around it. False: it reaches to its ends. */
+/* z of t in the tube of radius 1 around a straight piece of route. False: it reaches its ends. */
 static bool pull_to_line(const struct relax *x, const struct window *w, unsigned groups, unsigned i,
                          float s, lanes z[])
 {
@@ -319,8 +321,8 @@ static bool pull_to_line(const struct relax *x, const struct window *w, unsigned
 }
 
 /*
- * Where something is missing beside sample i: t and now are replaced so that near_of() comes to (1 - a) z + u and z - u -
- * now. s: t along the route.
+ * Where something is missing beside sample i: t and now are replaced so that near_of() comes to (1
+ * - a) z + u and z - u - now. s: t along the route.
  */
 static void pull(struct relax *x, const struct window *w, const struct route *r,
                  const struct relax_pass *pass, float tolerance_mm, unsigned i, float s)
@@ -372,7 +374,7 @@ static inline lanes squares_of(const struct relax *x, const struct window *w, un
     return square.even + square.odd;
 }
 
-/* Places t that are not within the tube beside their sample, or where it is not that straight, are pulled there. */
+/* Places t outside the tube, or where it is not that straight, are pulled there. */
 static void into_tube(struct relax *x, const struct window *w, const struct route *r,
                       const struct relax_pass *pass, float tolerance_mm)
 {
@@ -402,7 +404,7 @@ static lanes corner_of(const struct relax *x, const struct window *w, unsigned g
            x->scale.near_per_unit[group];
 }
 
-/* The same of the curve at a corner: what lies across the mean direction is within the tolerance. */
+/* The same of the curve at a corner: across the mean direction it is within the tolerance. */
 static void into_corner(struct relax *x, const struct window *w, const struct relax_pass *pass,
                         unsigned groups, unsigned k)
 {

@@ -7,15 +7,18 @@
 #include "smooth/window.h"
 
 /*
- * Corners of the route in a window that are looked at one by one, half as many where there are two groups of lanes; of
- * those behind them the verifier alone knows.
+ * Corners of the route in a window that are looked at one by one, half as many where there are two
+ * groups of lanes; of those behind them the verifier alone knows.
  */
 #define RELAX_CORNERS_MAX 32
 
 /* Values of all lanes at every sample: one group of lanes after the other. */
 typedef lanes relax_rows[SMOOTH_SAMPLES_MAX];
 
-/* Corners, and the places of the curve that pass them; lengths as parts of the tolerance, groups as of the rows. */
+/*
+ * Corners, and the places of the curve that pass them; lengths as parts of the tolerance, groups as
+ * of the rows.
+ */
 struct relax_corners {
     unsigned count;
     unsigned capacity;
@@ -28,8 +31,8 @@ struct relax_corners {
 };
 
 /*
- * What the rows of one axis count. A unit of a coordinate is near_per_unit parts of the tolerance, and the two others are
- * relative to that.
+ * What the rows of one axis count. A unit of a coordinate is near_per_unit parts of the tolerance,
+ * and the two others are relative to that.
  */
 struct relax_scale {
     lanes near_per_unit[SMOOTH_GROUPS_MAX];

@@ -6,7 +6,10 @@
 
 #include <string.h>
 
-/* Nor do those that leave the chord of two samples by a small part of the tolerance: turn times spacing. */
+/*
+ * Nor do those that leave the chord of two samples by a small part of the tolerance: turn times
+ * spacing.
+ */
 #define CORNER_LEAVES 0.5f
 
 /* Corners that turn less need no condition of their own. */
@@ -46,7 +49,10 @@ static void set_spot(struct relax_corners *c, const struct window *w, const stru
     }
 }
 
-/* Where the curve passes the start of an element: the piece and the fraction by the places of its samples. */
+/*
+ * Where the curve passes the start of an element: the piece and the fraction by the places of its
+ * samples.
+ */
 static void add_corner(struct relax_corners *c, const struct window *w, const struct route *r,
                        uint32_t element, unsigned *sample)
 {

@@ -139,7 +139,10 @@ void takt_route_move(const struct route *r, uint32_t index, struct move *move)
     takt_route_scatter(r, route_end_point(r, index), &move->end);
 }
 
-/* Weighted length for a mm of a curve, or a rad where only rotary axes move: that of the linear axes is 1. */
+/*
+ * Weighted length for a mm of a curve, or a rad where only rotary axes move: that of the linear
+ * axes is 1.
+ */
 static float weighted_length(const struct curve *curve)
 {
     float square = curve->rotary ? 0.0f : 1.0f;

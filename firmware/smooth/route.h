@@ -1,10 +1,12 @@
 /*
- * The programmed path of one chain: curves that follow each other without a stop, with a nominal feed along them.
+ * The programmed path of one chain: curves that follow each other without a stop, with a nominal
+ * feed along them.
  *
  *     push -> [ element | element | ... ] -> forget
  *
- * Places on it are told by the length from the chain's start, over all axes as distances are: a degree counts like a
- * millimetre (limits.h). Points have a slot for every axis the machine has, in the order of the axes.
+ * Places on it are told by the length from the chain's start, over all axes as distances are: a
+ * degree counts like a millimetre (limits.h). Points have a slot for every axis the machine has, in
+ * the order of the axes.
  */
 #ifndef TAKT_SMOOTH_ROUTE_H
 #define TAKT_SMOOTH_ROUTE_H
@@ -18,7 +20,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The axes of the machine, and their limits, by slot. Slots that no axis has are for filling groups of lanes. */
+/*
+ * The axes of the machine, and their limits, by slot. Slots that no axis has are for filling groups
+ * of lanes.
+ */
 struct route_slots {
     unsigned count;
     unsigned groups; /* of lanes */
@@ -27,12 +32,15 @@ struct route_slots {
     float velocity_mm_s[SMOOTH_SLOTS_MAX];
     float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
     float jerk_mm_s3[SMOOTH_SLOTS_MAX];
-    float
-        change_per_s; /* how fast the rate is to change where the axes are slow enough (verifier.h), */
+    /* how fast the rate is to change where the axes are slow enough (verifier.h), */
+    float change_per_s;
     float rounded_per_s2; /* and to begin to */
 };
 
-/* What a curve has that a line between the same two points does not have; its slope is found from those. */
+/*
+ * What a curve has that a line between the same two points does not have; its slope is found from
+ * those.
+ */
 struct route_curved {
     enum curve_kind kind;
     float per_mm; /* length of the route for a mm of it: 1 without rotary axes */
@@ -75,8 +83,8 @@ struct route_mode {
 
 struct route {
     struct route_slots slots;
-    float
-        chord_mm; /* how far the line through setpoints may leave the curve at a corner (limits.h), */
+    /* how far the line through setpoints may leave the curve at a corner (limits.h), */
+    float chord_mm;
     float chord_per_second; /* and does for c_0 - 2 c_1 + c_2 */
     unsigned moved;         /* axes that the chain moves, as far as is known, by bit */
     float part;             /* of the tolerance, within which a curve is looked for */
@@ -152,11 +160,17 @@ void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, doubl
 /* On an element; a place outside is its nearer end. */
 void takt_route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
 void takt_route_scatter(const struct route *r, const double by_slot[], struct point *p);
-/* The motion of an element, if it is an arc with its centre and the turns from a place on; false: it is none. */
+/*
+ * The motion of an element, if it is an arc with its centre and the turns from a place on; false:
+ * it is none.
+ */
 bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
 /* Second derivative by the route, weighted; 0 on lines. Returns its size, 1/mm. */
 float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
-/* Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a mm of it. */
+/*
+ * Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a
+ * mm of it.
+ */
 float takt_route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
 /* Radius of its curvature there; infinite on lines. */
 float takt_route_radius(const struct route *r, uint32_t index, double at_mm);
@@ -165,8 +179,8 @@ float takt_route_straight(const struct route *r, uint32_t index, double at_mm, f
 /* Those at both sides of the start of an element that is not the first. */
 void takt_route_corner(const struct route *r, uint32_t index, float before[], float after[]);
 /*
- * The nearest place to x between from_mm and to_mm that can be walked to from f->at_mm in f->element without moving
- * away: at a retrace it stays on the branch it is on.
+ * The nearest place to x between from_mm and to_mm that can be walked to from f->at_mm in
+ * f->element without moving away: at a retrace it stays on the branch it is on.
  */
 void takt_route_closest(const struct route *r, const double x[], double from_mm, double to_mm,
                         struct route_closest *f);

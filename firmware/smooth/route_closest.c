@@ -1,4 +1,7 @@
-/* The closest point of the route: on a line, on a curved element, and over the junctions between them. */
+/*
+ * The closest point of the route: on a line, on a curved element, and over the junctions between
+ * them.
+ */
 #include "smooth/route_curved.h"
 
 #include "base/assert.h"
@@ -9,7 +12,10 @@
 /* Part of the tolerance by which the neighbour of an element must be nearer. */
 #define NEARER 0.2f
 
-/* A turn up to which the angle can be told by it, and how much more than that times the distance is looked at. */
+/*
+ * A turn up to which the angle can be told by it, and how much more than that times the distance is
+ * looked at.
+ */
 #define SLIGHT       0.5f
 #define SLIGHT_REACH 1.25f
 
@@ -104,8 +110,9 @@ static void closest_on(const struct route *r, uint32_t index, const double x[], 
 }
 
 /*
- * Can the element on the other side of a junction be nearer than the closest point? From a closest point before the junction, a line that goes on
- * at an angle t cannot, unless the junction is within distance tan t; and tan t < 1.2 |turn| of slight turns.
+ * Can the element on the other side of a junction be nearer than the closest point? From a closest
+ * point before the junction, a line that goes on at an angle t cannot, unless the junction is
+ * within distance tan t; and tan t < 1.2 |turn| of slight turns.
  */
 static bool is_near_junction(const struct route *r, uint32_t next, double junction, float turn,
                              const struct route_closest *f)
@@ -117,8 +124,9 @@ static bool is_near_junction(const struct route *r, uint32_t next, double juncti
 }
 
 /*
- * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless the closest point is at the
- * junction already. Near a reversal both sides are near, and the curve is on the first until it has turned.
+ * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless
+ * the closest point is at the junction already. Near a reversal both sides are near, and the curve
+ * is on the first until it has turned.
  */
 static void walk(const struct route *r, const double x[], double from_mm, double to_mm, bool onward,
                  struct route_closest *f)

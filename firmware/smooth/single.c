@@ -11,8 +11,8 @@ union bits_of_single {
 };
 
 /*
- * The bits of x as an integer are 2^23 (127 + log2 x), nearly, so those of its cube root a third of them and 2^23 2/3 127;
- * some less makes the error the same to both sides.
+ * The bits of x as an integer are 2^23 (127 + log2 x), nearly, so those of its cube root a third of
+ * them and 2^23 2/3 127; some less makes the error the same to both sides.
  */
 static float near_cbrt(float x)
 {

@@ -1,6 +1,7 @@
 /*
- * Single precision: what the smoother works with on differences, where 24 bits are enough and a microcontroller has a
- * unit for it. + - * / and square root alone, so the bits are the same everywhere.
+ * Single precision: what the smoother works with on differences, where 24 bits are enough and a
+ * microcontroller has a unit for it. + - * / and square root alone, so the bits are the same
+ * everywhere.
  */
 #ifndef TAKT_SMOOTH_SINGLE_H
 #define TAKT_SMOOTH_SINGLE_H
@@ -41,7 +42,10 @@ static inline int single_round(float x)
     return (int)(x < 0.0f ? x - 0.5f : x + 0.5f);
 }
 
-/* Cube root of 1e-15 <= x <= 1e15 but for some 1e-6 of it; of 0, or less than that, too large at most. */
+/*
+ * Cube root of 1e-15 <= x <= 1e15 but for some 1e-6 of it; of 0, or less than that, too large at
+ * most.
+ */
 float takt_single_cbrt(float x);
 
 #endif

@@ -25,13 +25,19 @@ static const float parts[PARTS] = {0.25f, 0.5f, 1.0f};
 /* And in ever narrower ones as long as that is quicker. */
 #define PART_LEAST (1.0f / 64.0f)
 
-/* Where the chain goes on behind the window, a narrower one must be quicker by this: longer intervals reach farther ahead. */
+/*
+ * Where the chain goes on behind the window, a narrower one must be quicker by this: longer
+ * intervals reach farther ahead.
+ */
 #define CLEARLY 0.85f
 
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
 
-/* A slower piece leaves the tolerance by at most this part of what it left it by before, or slower is no help. */
+/*
+ * A slower piece leaves the tolerance by at most this part of what it left it by before, or slower
+ * is no help.
+ */
 #define NEARER 0.95f
 
 /* What a microcontroller is ready to give for smoothing. */
@@ -45,10 +51,16 @@ static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
     takt_window_locate(&s->window, &s->route);
 }
 
-/* With all known of a longer route in the window, one of this many pieces is kept: the others slow down to its end. */
+/*
+ * With all known of a longer route in the window, one of this many pieces is kept: the others slow
+ * down to its end.
+ */
 #define BLIND_PART 2
 
-/* Pieces before one that leaves the tolerance that are tried again with it: what they begin with binds it. */
+/*
+ * Pieces before one that leaves the tolerance that are tried again with it: what they begin with
+ * binds it.
+ */
 #define MARGIN 12
 
 static unsigned kept_most(const struct smooth *s)
@@ -56,7 +68,10 @@ static unsigned kept_most(const struct smooth *s)
     return s->window.capacity * KEPT_SIXTEENTHS / 16U;
 }
 
-/* Pieces that should keep the tolerance: more than are kept, so that the next ones can do it as well. */
+/*
+ * Pieces that should keep the tolerance: more than are kept, so that the next ones can do it as
+ * well.
+ */
 static unsigned wanted(const struct smooth *s)
 {
     const unsigned pieces = s->window.count - 3;
@@ -96,8 +111,8 @@ static unsigned kept(const struct smooth *s, unsigned good)
 }
 
 /*
- * No way on has been found in motion, or none that is worth it: what was proved the last time is gone to its end, and come
- * to rest there.
+ * No way on has been found in motion, or none that is worth it: what was proved the last time is
+ * gone to its end, and come to rest there.
  */
 static void fall_back(struct smooth *s)
 {
@@ -108,7 +123,9 @@ static void fall_back(struct smooth *s)
     takt_head_take(&s->head, &s->window, &s->route);
 }
 
-/* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
+/*
+ * The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was.
+ */
 static void time_last(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     struct verifier_verdict again;
@@ -125,9 +142,10 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ve
 }
 
 /*
- * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to each other and the curve to
- * them. Where that brings it no nearer the curve would only come there later and later. A corner that was left out is
- * noticed some way behind it: it is slow where all was whole.
+ * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to
+ * each other and the curve to them. Where that brings it no nearer the curve would only come there
+ * later and later. A corner that was left out is noticed some way behind it: it is slow where all
+ * was whole.
  */
 static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
@@ -147,7 +165,10 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ve
     }
 }
 
-/* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
+/*
+ * The order goes on to the end of what is handed on; where the axes went back to the route it
+ * begins there.
+ */
 static void follow_ready(struct smooth *s, const struct verifier_verdict *v)
 {
     TAKT_ASSERT(s->ready > 0 && s->ready + 1 < s->window.count);
@@ -204,8 +225,8 @@ static bool prefers_path(const struct smooth *s, union smooth_scratch *scratch, 
 }
 
 /*
- * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved last is gone to its end; and
- * from rest, where every way is open again, the path itself is taken.
+ * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved
+ * last is gone to its end; and from rest, where every way is open again, the path itself is taken.
  */
 static void choose(struct smooth *s, union smooth_scratch *scratch)
 {
@@ -221,7 +242,10 @@ static void choose(struct smooth *s, union smooth_scratch *scratch)
     }
 }
 
-/* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
+/*
+ * What comes well before a piece that leaves the tolerance is kept, the rest is tried again with
+ * the next window.
+ */
 static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
                        struct verifier_verdict *v)
 {
@@ -249,7 +273,10 @@ static void search_anew(struct smooth *s, union smooth_scratch *scratch, struct 
     search_way(s, scratch, ROUNDS_FIRST, v);
 }
 
-/* In motion it begins with what was found before; where no way leads on from that, one is looked for from nothing. */
+/*
+ * In motion it begins with what was found before; where no way leads on from that, one is looked
+ * for from nothing.
+ */
 static void search_on(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     search_way(s, scratch, ROUNDS, v);
@@ -259,8 +286,8 @@ static void search_on(struct smooth *s, union smooth_scratch *scratch, struct ve
 }
 
 /*
- * How long the curve that was found seems to take to the end of what is known, by its time up to until_mm, or to the end of its
- * pieces if that is sooner: there until_mm is then.
+ * How long the curve that was found seems to take to the end of what is known, by its time up to
+ * until_mm, or to the end of its pieces if that is sooner: there until_mm is then.
  */
 static float found_time(struct smooth *s, union smooth_scratch *scratch, double *until_mm)
 {
@@ -291,7 +318,10 @@ static float worth_of_width(const struct smooth *s)
     return is_end(s, s->ready) ? 1.0f : CLEARLY;
 }
 
-/* What is found in a part of the tolerance is within all of it, and often the quicker: so the quickest is taken. */
+/*
+ * What is found in a part of the tolerance is within all of it, and often the quicker: so the
+ * quickest is taken.
+ */
 static void search_from_rest(struct smooth *s, union smooth_scratch *scratch,
                              struct verifier_verdict *v)
 {
@@ -387,8 +417,8 @@ static void end_element(struct smooth *s)
 }
 
 /*
- * The next motion of the path itself; false: the axes are at its end. One before that which has been told is a part of that: line
- * and number never go back.
+ * The next motion of the path itself; false: the axes are at its end. One before that which has
+ * been told is a part of that: line and number never go back.
  */
 static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct curve *curve)
 {

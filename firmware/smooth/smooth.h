@@ -1,5 +1,6 @@
 /*
- * Smooths chains of motions within a tolerance (G64 P): curves in, pieces of one smooth curve out. See README.md.
+ * Smooths chains of motions within a tolerance (G64 P): curves in, pieces of one smooth curve out.
+ * See README.md.
  *
  *     push -> [ route ] -> [ window of samples ] -> take
  *
@@ -32,7 +33,10 @@ struct smooth_change {
     double rounded;
 };
 
-/* A piece of curve: x(f) = sum of b_k(f) control[k], f = 0 ... 1 in interval_s of nominal time (window.h). */
+/*
+ * A piece of curve: x(f) = sum of b_k(f) control[k], f = 0 ... 1 in interval_s of nominal time
+ * (window.h).
+ */
 struct smooth_piece {
     const struct move *move; /* the motion it belongs to; valid until the next call */
     uint32_t number;         /* of that motion */
@@ -50,9 +54,11 @@ struct smooth_piece {
 
 /* What has been taken. */
 enum smooth_taken {
-    SMOOTH_NONE, /* more motions, or the chain's end, must come first, or the chain has been taken to its end */
+    /* more motions, or the chain's end, must come first, or the chain has been taken to its end */
+    SMOOTH_NONE,
     SMOOTH_PIECE, /* a piece of the curve */
-    SMOOTH_MOTION /* a motion of the path itself: of the piece move, number, starts and continues count */
+    /* a motion of the path itself: of the piece move, number, starts and continues count */
+    SMOOTH_MOTION
 };
 
 /* What it computes with: holds nothing between calls. */
@@ -71,8 +77,8 @@ struct smooth {
     struct smooth_head head;
     struct merge merge; /* the newest line, not on the route yet */
     struct verifier_change change;
-    struct order
-        order; /* where the pieces that are ready end; before there are any, where the window begins */
+    /* where the pieces that are ready end; before there are any, where the window begins */
+    struct order order;
     struct move move; /* of the piece taken last, */
     uint32_t told;    /* and its element: the latest one of the pieces taken */
     unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
@@ -84,8 +90,8 @@ struct smooth {
     struct worth_since since;
     bool stands;       /* a piece is still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
-    bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
-    bool stand_rotary; /* of the piece before or behind them, */
+    bool leaves;       /* after that the chain goes on; else it ends it, or a part of it */
+    bool stand_rotary; /* of the piece before or behind it, */
     uint32_t stand_number;
     struct point stand_at; /* and where the axes stand */
     bool stops;            /* the last of the ready ones is a stop */
@@ -99,21 +105,25 @@ struct smooth {
 void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits);
 /* May this motion be part of a smooth chain? */
 bool takt_smooth_takes(const struct move *move, const struct curve *curve);
-/* May it join the chain that is open? True when none is. False: the next chain is expected to begin with it. */
+/*
+ * May it join the chain that is open? True when none is. False: the next chain is expected to begin
+ * with it.
+ */
 bool takt_smooth_joins(struct smooth *s, const struct move *move, const struct curve *curve);
 bool takt_smooth_has_room(const struct smooth *s);
 /* Appends a motion. Needs room and takt_smooth_joins(). */
 void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number,
                       const struct curve *curve);
 /*
- * Is all of the chain so far one programmed line? If nothing follows there is nothing to smooth: no curve is shorter, and what
- * plans lines from rest to rest is quicker. It may be forgotten then.
+ * Is all of the chain so far one programmed line? If nothing follows there is nothing to smooth: no
+ * curve is shorter, and what plans lines from rest to rest is quicker. It may be forgotten then.
  */
 bool takt_smooth_is_line(const struct smooth *s);
 /* Nothing follows in this chain: it ends at rest. */
 void takt_smooth_finish(struct smooth *s);
 /*
- * The next piece, or the next motion: that is a curve, its end the one of piece->move. scratch: no matter what is in it.
+ * The next piece, or the next motion: that is a curve, its end the one of piece->move. scratch: no
+ * matter what is in it.
  */
 enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scratch,
                                    struct smooth_piece *piece, struct curve *curve);

@@ -1,15 +1,16 @@
 /*
- * With the curve x(u), u in samples, and the rate r = u' of it, b = r^2: u'' = b'/2 and u''' = r b''/2, so by the chain rule
- * the axes need
+ * With the curve x(u), u in samples, and the rate r = u' of it, b = r^2: u'' = b'/2 and u''' = r
+ * b''/2, so by the chain rule the axes need
  *
  *     x' b'/2 + x'' b                        within A d^2
  *     r (x' b''/2 + 3/2 x'' b' + x''' b)     within J d^3
  *
- * less what a change of rate needs there (verifier.h), at both ends of each piece: rows of the three coefficients of b
- * (Verscheure et al. 2009 have the first row; the second is theirs differentiated once more). Least time, the sum of
- * 1/sqrt(b), is found by a barrier method (Boyd and Vandenberghe 2004, 11.3): Newton's steps on
- * sum 1/sqrt(b) - mu sum log(slack)  while mu falls. What is exceeded to begin with may stay so far off but no farther, and is
- * drawn inside. So every iteration keeps what the one before kept.
+ * less what a change of rate needs there (verifier.h), at both ends of each piece: rows of the
+ * three coefficients of b (Verscheure et al. 2009 have the first row; the second is theirs
+ * differentiated once more). Least time, the sum of 1/sqrt(b), is found by a barrier method (Boyd
+ * and Vandenberghe 2004, 11.3): Newton's steps on sum 1/sqrt(b) - mu sum log(slack)  while mu
+ * falls. What is exceeded to begin with may stay so far off but no farther, and is drawn inside. So
+ * every iteration keeps what the one before kept.
  */
 #include "smooth/tempo_begin.h"
 
@@ -21,7 +22,10 @@
 
 #define ITERATIONS 6
 
-/* The barrier's weight to begin with, and what is left of it after a step that went at least so far. */
+/*
+ * The barrier's weight to begin with, and what is left of it after a step that went at least so
+ * far.
+ */
 #define BARRIER      0.3f
 #define BARRIER_LESS 0.4f
 #define STEP_FAR     0.3f
@@ -36,14 +40,19 @@
 #define NEAR    0.98f
 #define FARTHER 1.02f
 
-/* What pieces need of an axis and what it has for that, in parts of what it may; how the need hangs on three coefficients. */
+/*
+ * What pieces need of an axis and what it has for that, in parts of what it may; how the need hangs
+ * on three coefficients.
+ */
 struct row {
     lanes value;
     lanes most;
     lanes by[3];
 };
 
-/* Changes of rate leave this part of what an axis may at least: verifier.c has bounds of its own. */
+/*
+ * Changes of rate leave this part of what an axis may at least: verifier.c has bounds of its own.
+ */
 #define LEFT_LEAST 0.5f
 
 /* What a change of rate leaves, or a little more than what is near it or beyond. */
@@ -129,8 +138,8 @@ static inline void rows_of(const struct tempo *p, unsigned slot, unsigned piece,
 }
 
 /*
- * Sums over pieces' rows: for each of their three coefficients the gradient, and its products with itself and with
- * those behind.
+ * Sums over pieces' rows: for each of their three coefficients the gradient, and its products with
+ * itself and with those behind.
  */
 struct sums {
     lanes of[TEMPO_SUMS];
@@ -140,8 +149,8 @@ struct sums {
 static const unsigned sums_of[3] = {0, 4, 7};
 
 /*
- * d/d of log(most - v) + log(most + v), and Newton's part of the second derivative. What is exceeded is
- * drawn inside all the time.
+ * d/d of log(most - v) + log(most + v), and Newton's part of the second derivative. What is
+ * exceeded is drawn inside all the time.
  */
 static inline void add_row(struct sums *s, const struct row *row, float weight)
 {
@@ -181,7 +190,10 @@ static inline void sum_lane(const struct tempo *p, const struct route *r, unsign
     }
 }
 
-/* Sums of the pieces from one on, as many as there are lanes, over all slots: in the order of lanes_sum(). */
+/*
+ * Sums of the pieces from one on, as many as there are lanes, over all slots: in the order of
+ * lanes_sum().
+ */
 static void sum_pieces(struct tempo *p, const struct route *r, unsigned piece, float weight)
 {
     const struct end end[2] = {end_of(p->rate_squared + piece),
@@ -219,13 +231,19 @@ static inline lanes most_of(const struct tempo *p, unsigned i)
         most, lanes_choose(rate_squared > NEAR * most, FARTHER * rate_squared, lanes_all(0.0f)));
 }
 
-/* One of the sums of coefficient i where that is the first one of its piece, the second, or the third. */
+/*
+ * One of the sums of coefficient i where that is the first one of its piece, the second, or the
+ * third.
+ */
 static inline lanes sum_at(const struct tempo *p, unsigned as, unsigned n, unsigned i)
 {
     return lanes_at(&p->sum[sums_of[as] + n][i + 2 - as]);
 }
 
-/* Adds up the three pieces that each coefficient belongs to, and its own part: d/db of -1/sqrt(b) and of its bounds. */
+/*
+ * Adds up the three pieces that each coefficient belongs to, and its own part: d/db of -1/sqrt(b)
+ * and of its bounds.
+ */
 static void set_coefficients(struct tempo *p, unsigned i, float weight)
 {
     const lanes b = lanes_at(p->rate_squared + i);

@@ -1,6 +1,6 @@
 /*
- * How fast nominal time should pass along a window's curve as it is, so that it takes the least of it: b = r^2, the square of
- * the rate, a quadratic B-spline with its knots at the samples.
+ * How fast nominal time should pass along a window's curve as it is, so that it takes the least of
+ * it: b = r^2, the square of the rate, a quadratic B-spline with its knots at the samples.
  *
  *     b(u) = sum of weight_k(f) squared rate[i + k], k = 0..2, for u = i + 1 + f: piece i of the window
  */
@@ -9,13 +9,18 @@
 
 #include "smooth/window.h"
 
-/* One coefficient a piece, one before the first and one behind the last; and what fills the last lanes. */
+/*
+ * One coefficient a piece, one before the first and one behind the last; and what fills the last
+ * lanes.
+ */
 #define TEMPO_MAX (SMOOTH_SAMPLES_MAX + SMOOTH_LANES)
 
 /* Samples of all slots; and what fills the last lanes. */
 #define TEMPO_PLACES_MAX (SMOOTH_LANES * SMOOTH_SAMPLES_MAX + SMOOTH_LANES)
 
-/* What pieces need of an axis, at their start an acceleration, and a jerk there and at their end. */
+/*
+ * What pieces need of an axis, at their start an acceleration, and a jerk there and at their end.
+ */
 #define TEMPO_ROWS 3
 
 /* What rows add to three coefficients: a gradient of each, and products of each two. */
@@ -26,7 +31,10 @@ struct tempo_approach {
     lanes room, size;
 };
 
-/* Working memory; holds nothing between calls but squared rate. Lanes are pieces that follow each other. */
+/*
+ * Working memory; holds nothing between calls but squared rate. Lanes are pieces that follow each
+ * other.
+ */
 struct tempo {
     unsigned pieces;
     unsigned capacity; /* samples of a slot */
@@ -45,7 +53,10 @@ struct tempo {
     struct tempo_approach approach[SMOOTH_SLOTS_MAX][TEMPO_ROWS];
 };
 
-/* The best that is found. It begins as the window does, at rate 1; unless the path ends there, it ends so too. */
+/*
+ * The best that is found. It begins as the window does, at rate 1; unless the path ends there, it
+ * ends so too.
+ */
 void takt_tempo_find(struct tempo *p, const struct window *w, const struct route *r);
 /* The same rate everywhere, but for this many pieces on both sides of one. */
 void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,

@@ -5,7 +5,10 @@
 #include "smooth/single.h"
 #include "smooth/verifier.h"
 
-/* New samples are put on the curve from outside: that takes some of the jerk, and as much acceleration of an interval. */
+/*
+ * New samples are put on the curve from outside: that takes some of the jerk, and as much
+ * acceleration of an interval.
+ */
 #define THIRD_PART      0.95f
 #define THIRD_OF_SECOND 0.5f
 

@@ -8,7 +8,10 @@
 #define RATE_SQUARED_MIN  0.0225f
 #define RATE_SQUARED_MOST 2.25f
 
-/* Of p->pieces from the window's first sample on: differences, their limits, and the most that b may be. */
+/*
+ * Of p->pieces from the window's first sample on: differences, their limits, and the most that b
+ * may be.
+ */
 void takt_tempo_begin(struct tempo *p, const struct window *w, const struct route *r);
 
 #endif

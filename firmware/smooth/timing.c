@@ -43,8 +43,8 @@ static struct spot spot_at(const struct timing *t, float u)
 }
 
 /*
- * The control point that has the curve where it was: c = x - (x'' b + x' b'/2)/6, its own second derivative being the one of
- * time (Schoenberg's quasi-interpolant of third order).
+ * The control point that has the curve where it was: c = x - (x'' b + x' b'/2)/6, its own second
+ * derivative being the one of time (Schoenberg's quasi-interpolant of third order).
  */
 static void stand_off(const struct window *from, unsigned group, const struct spot *s,
                       struct window_spot *spot)

@@ -1,5 +1,6 @@
 /*
- * Times a smoothed window anew: nominal time passes faster where the axes have limits left, slower where they are exceeded.
+ * Times a smoothed window anew: nominal time passes faster where the axes have limits left, slower
+ * where they are exceeded.
  */
 #ifndef TAKT_SMOOTH_TIMING_H
 #define TAKT_SMOOTH_TIMING_H

@@ -14,7 +14,9 @@
 /* Places looked at in a piece, at most. */
 #define PLACES_MAX 8
 
-/* From one of a piece's control points to the next, weighted, and from its first one to its last. */
+/*
+ * From one of a piece's control points to the next, weighted, and from its first one to its last.
+ */
 struct steps {
     lanes step[3][SMOOTH_GROUPS_MAX];
     lanes way[SMOOTH_GROUPS_MAX];
@@ -49,7 +51,10 @@ static float dot_of(const struct route *r, const lanes a[], const lanes b[])
     return dot;
 }
 
-/* Square of the sine of the largest angle between a piece and the way from its first control point to its last; 1: a right one. */
+/*
+ * Square of the sine of the largest angle between a piece and the way from its first control point
+ * to its last; 1: a right one.
+ */
 static float turn_square(const struct route *r, const struct steps *s)
 {
     const float way = dot_of(r, s->way, s->way);
@@ -67,7 +72,10 @@ static float turn_square(const struct route *r, const struct steps *s)
     return most;
 }
 
-/* Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the second derivative. */
+/*
+ * Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the
+ * second derivative.
+ */
 static float second_square(const struct window *w, const struct route *r, unsigned sample)
 {
     lanes second[SMOOTH_GROUPS_MAX];
@@ -80,7 +88,10 @@ static float second_square(const struct window *w, const struct route *r, unsign
     return dot_of(r, second, second);
 }
 
-/* The most of that on a piece and its neighbours, which a line between two setpoints may reach into. */
+/*
+ * The most of that on a piece and its neighbours, which a line between two setpoints may reach
+ * into.
+ */
 static float second_around(const struct window *w, const struct route *r, unsigned piece)
 {
     const unsigned end = piece + 5 < w->count ? piece + 4 : w->count - 1;
@@ -93,8 +104,9 @@ static float second_around(const struct window *w, const struct route *r, unsign
 }
 
 /*
- * The most across a piece; it is largest at one of the ends. What lies along the piece takes no place off the line; what lies along the way from its first control point to its last does
- * so where the piece turns from that.
+ * The most across a piece; it is largest at one of the ends. What lies along the piece takes no
+ * place off the line; what lies along the way from its first control point to its last does so
+ * where the piece turns from that.
  */
 static float second_across(const struct window *w, const struct route *r, unsigned piece)
 {
@@ -129,9 +141,9 @@ struct look {
 };
 
 /*
- * Between two places that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at most. So many are looked at
- * that this takes no more than the part that is not verified. The lines through setpoints, a cycle apart, leave corners by
- * |x''| cycle^2/8 more.
+ * Between two places that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at
+ * most. So many are looked at that this takes no more than the part that is not verified. The lines
+ * through setpoints, a cycle apart, leave corners by |x''| cycle^2/8 more.
  */
 static struct look look_of(const struct window *w, const struct route *r, unsigned piece)
 {
@@ -151,7 +163,10 @@ static struct look look_of(const struct window *w, const struct route *r, unsign
     return look;
 }
 
-/* The place on the route beside one of the curve. The last samples may be thought to be before those that come to them. */
+/*
+ * The place on the route beside one of the curve. The last samples may be thought to be before
+ * those that come to them.
+ */
 static void find_closest(const struct window *w, const struct route *r, unsigned piece,
                          const float weight[4], struct route_closest *closest)
 {
@@ -200,7 +215,10 @@ struct pace {
     float rate;
 };
 
-/* The motion whose feed is the highest, among those that the curve can be on here; no feed where there is none. */
+/*
+ * The motion whose feed is the highest, among those that the curve can be on here; no feed where
+ * there is none.
+ */
 static struct pace fastest(const struct route *r, const struct order *order,
                            const struct verifier_need *need)
 {
@@ -221,7 +239,9 @@ static struct pace fastest(const struct route *r, const struct order *order,
     return most;
 }
 
-/* The slowest motion from the first to the last that the curve can be on before or after a chord. */
+/*
+ * The slowest motion from the first to the last that the curve can be on before or after a chord.
+ */
 static struct pace slowest(const struct route *r, const struct order *before,
                            const struct order *after, const struct verifier_need *need)
 {
@@ -238,7 +258,10 @@ static struct pace slowest(const struct route *r, const struct order *before,
     return least;
 }
 
-/* Is there a way on along a chord which is on motions of this rate or more alone, and passes others in an instant? */
+/*
+ * Is there a way on along a chord which is on motions of this rate or more alone, and passes others
+ * in an instant?
+ */
 static bool keeps_pace(const struct route *r, const struct order *before,
                        const struct verifier_need *need, float rate, struct order_chord chord)
 {
@@ -251,8 +274,8 @@ static bool keeps_pace(const struct route *r, const struct order *before,
 }
 
 /*
- * A motion of a feed that the curve may have all along a chord: that of the slower one of its ends, unless it must be on a slower
- * one between them.
+ * A motion of a feed that the curve may have all along a chord: that of the slower one of its ends,
+ * unless it must be on a slower one between them.
  */
 static struct pace pace_on(const struct route *r, const struct order *before,
                            const struct order *after, const struct verifier_need *need,
@@ -267,8 +290,8 @@ static struct pace pace_on(const struct route *r, const struct order *before,
 }
 
 /*
- * The order along a piece, and whose feed is its: at each place of it the curve is on some motion of that feed or more. Its
- * first place from which there is no way on, or 0.
+ * The order along a piece, and whose feed is its: at each place of it the curve is on some motion
+ * of that feed or more. Its first place from which there is no way on, or 0.
  */
 static unsigned follow_piece(struct window *w, const struct route *r, unsigned piece,
                              struct order *order)

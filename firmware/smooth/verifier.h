@@ -44,29 +44,37 @@ void takt_verifier_need(const struct window *w, const struct route *r, unsigned 
 void takt_verifier_rate(const struct verifier_need *need, const struct route *r, uint32_t element,
                         const struct verifier_change *change, struct verifier_rate *rate);
 /*
- * How fast the rate may change on a piece while it is not above the highest one, and not above 1: 1/s, a power of two times
- * change->by, so that neighbours mostly have the same.
+ * How fast the rate may change on a piece while it is not above the highest one, and not above 1:
+ * 1/s, a power of two times change->by, so that neighbours mostly have the same.
  */
 float takt_verifier_change_on(const struct verifier_need *need, const struct route *r,
                               const struct verifier_change *change,
                               const struct verifier_rate *rate);
-/* The rate at which a piece is gone along at the programmed feed of an element; infinite for a rapid. */
+/*
+ * The rate at which a piece is gone along at the programmed feed of an element; infinite for a
+ * rapid.
+ */
 float takt_verifier_programmed(const struct verifier_need *need, const struct route *r,
                                uint32_t element);
 /* What is said of a window's pieces. */
 struct verifier_verdict {
     unsigned good; /* pieces from the first one on that keep the tolerance in order */
-    float
-        beyond_mm; /* how far the next piece leaves the tolerance; 0 or less if it does not, but breaks the order */
-    /* by number of pieces, those after which the curve can be as far as it is thought to be: no corner is left out */
+    /*
+     * how far the next piece leaves the tolerance; 0 or less if it does not, but breaks the order
+     */
+    float beyond_mm;
+    /*
+     * by number of pieces, those after which the curve can be as far as it is thought to be: no
+     * corner is left out
+     */
     unsigned char whole[SMOOTH_SAMPLES_MAX];
     unsigned followed;  /* the last of those of the pieces that were to be kept, */
     struct order order; /* and what can have been come to there */
 };
 
 /*
- * Verifies the first count pieces, of which keep are to be kept. order: what can have been come to where they begin.
- * Tells the window whose feed is theirs.
+ * Verifies the first count pieces, of which keep are to be kept. order: what can have been come to
+ * where they begin. Tells the window whose feed is theirs.
  */
 void takt_verifier_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
                           const struct order *order, struct verifier_verdict *v);

@@ -1,6 +1,6 @@
 /*
- * What a piece needs of velocity, acceleration and jerk, and what that leaves: the highest rate that it may be gone along at, and
- * how fast that may change on it.
+ * What a piece needs of velocity, acceleration and jerk, and what that leaves: the highest rate
+ * that it may be gone along at, and how fast that may change on it.
  */
 #include "smooth/verifier.h"
 
@@ -13,18 +13,27 @@
 /* Rounding of limits. */
 #define LIMIT 0.999f
 
-/* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
+/*
+ * Parts of its acceleration that an axis at its highest velocity is left for changes of rate
+ * (override, hold).
+ */
 #define LEFT_LEAST 0.06
 #define LEFT_MOST  0.5
 
 /* Part of the pieces before the trapezoidal reference that are known on the average: README.md. */
 #define KNOWN_PART 0.7
 
-/* Parts of the jerk that beginning to change the rate may need, and changing it on a curve: the curve needs the rest. */
+/*
+ * Parts of the jerk that beginning to change the rate may need, and changing it on a curve: the
+ * curve needs the rest.
+ */
 #define ROUNDING_PART 0.3
 #define TURNING_PART  0.4f
 
-/* A power of two times what every piece leaves is what is needed, if no farther from it than by this. */
+/*
+ * A power of two times what every piece leaves is what is needed, if no farther from it than by
+ * this.
+ */
 #define NEAR_ENOUGH 1.4142
 
 /* Where the axes nearly stand, nothing else bounds the rate. */
@@ -40,8 +49,9 @@
 #define CHANGE_MOST 64.0f
 
 /*
- * Need of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8
- * at most. square: of the first derivative, over the linear axes and over the others.
+ * Need of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by
+ * |third difference| / 8 at most. square: of the first derivative, over the linear axes and over
+ * the others.
  */
 static void need_of_group(const struct window *w, const struct route *r, unsigned group,
                           unsigned piece, struct verifier_need *need, float square[2])
@@ -90,7 +100,10 @@ float takt_verifier_programmed(const struct verifier_need *need, const struct ro
     return feed > 0.0f ? route_programmed(r, element) / feed : SINGLE_INFINITY;
 }
 
-/* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
+/*
+ * The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is
+ * less.
+ */
 static double reached(const struct smooth_limits *limits, int axis)
 {
     TAKT_ASSERT(limits->velocity_mm_s[axis] > 0.0 && limits->jerk_mm_s3[axis] > 0.0);
@@ -99,8 +112,8 @@ static double reached(const struct smooth_limits *limits, int axis)
 }
 
 /*
- * The trapezoidal reference comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
- * slow before the end of what is known, over and over.
+ * The trapezoidal reference comes to rest from the full rate over the pieces that it knows, n of d
+ * s: r' = 1/(2 n d). Less would make it slow before the end of what is known, over and over.
  */
 static double change_needed(double interval_s)
 {
@@ -142,10 +155,11 @@ static double least_jerk(const struct smooth_limits *limits)
 }
 
 /*
- * Over R are changes of rate rounded: what the axes need from no acceleration to all of it, A/J. On a short way x it is less: at
- * both ends the axes stand for as long as the rate needs for w windows of R, and what beginning to change it may need of the
- * jerk, x' r'/R, makes the curve slower by a third of that part of it where jerk binds, as if that were half of the way: by
- * x r'/(6 R J) in all. The sum is least where
+ * Over R are changes of rate rounded: what the axes need from no acceleration to all of it, A/J. On
+ * a short way x it is less: at both ends the axes stand for as long as the rate needs for w windows
+ * of R, and what beginning to change it may need of the jerk, x' r'/R, makes the curve slower by a
+ * third of that part of it where jerk binds, as if that were half of the way: by x r'/(6 R J) in
+ * all. The sum is least where
  *
  *     R^2 = x r'/(12 w J)
  */
@@ -155,8 +169,9 @@ static double rounding_of_way(const struct smooth_limits *limits, double by, dou
 }
 
 /*
- * Where changes are rounded over less than A/J they are so slow that no axis needs more than its part of the jerk for them, V r'/R <=
- * part J. A chain that goes on behind what is known needs them for that, so it has no shorter R.
+ * Where changes are rounded over less than A/J they are so slow that no axis needs more than its
+ * part of the jerk for them, V r'/R <= part J. A chain that goes on behind what is known needs them
+ * for that, so it has no shorter R.
  */
 void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
                           const struct verifier_way *way, struct verifier_change *change)
@@ -192,7 +207,8 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
  *     velocity      x' r                             <= V
  *     acceleration  x' r' + x'' r^2                  <= A
  *     jerk          x' r'' + 3 x'' r r' + x''' r^3   <= J
- * Each of the jerk's terms has a part for itself: a curve that needed all of it for one could not be gone along.
+ * Each of the jerk's terms has a part for itself: a curve that needed all of it for one could not
+ * be gone along.
  */
 static float most_of_axis(const struct verifier_need *need, const struct route_slots *slots,
                           float by, float rounded, unsigned i, float most)

@@ -7,26 +7,37 @@
 #include <string.h>
 
 /*
- * Part of the distance between the neighbours of a sample within which it may move along the route; and at least this
- * length, but not many tolerances, lest the curve go back so far along the route.
+ * Part of the distance between the neighbours of a sample within which it may move along the route;
+ * and at least this length, but not many tolerances, lest the curve go back so far along the route.
  */
 #define REACH            0.8
 #define REACH_MIN_MM     0.01
 #define REACH_TOLERANCES 1.5
 
-/* A corner that turns by more than this must be passed by the curve before its samples are beyond it. */
+/*
+ * A corner that turns by more than this must be passed by the curve before its samples are beyond
+ * it.
+ */
 #define SHARP 0.2f
 
-/* Up to this many tolerances from a corner is near it: the chord of two samples cannot tell more. */
+/*
+ * Up to this many tolerances from a corner is near it: the chord of two samples cannot tell more.
+ */
 #define NEAR_CORNER 3.0f
 
-/* A window as long as the fastest feed makes it takes this many units; coordinates may be a few times that. */
+/*
+ * A window as long as the fastest feed makes it takes this many units; coordinates may be a few
+ * times that.
+ */
 #define UNITS 268435456.0
 
 /* Coordinates are never farther from the origin. */
 #define UNITS_MAX 1073741824.0
 
-/* b0 = (1-f)^3/6, b1 = (4 - 6f^2 + 3f^3)/6, b2 = (1 + 3f + 3f^2 - 3f^3)/6, b3 = f^3/6 (uniform cubic B-spline). */
+/*
+ * b0 = (1-f)^3/6, b1 = (4 - 6f^2 + 3f^3)/6, b2 = (1 + 3f + 3f^2 - 3f^3)/6, b3 = f^3/6 (uniform
+ * cubic B-spline).
+ */
 void takt_window_weights(float f, float weight[4])
 {
     const float g = 1.0f - f;
@@ -155,9 +166,9 @@ void takt_window_start(struct window *w, const struct route *r)
 }
 
 /*
- * The spline at sample 1 is x[1] + (x[0] - 2 x[1] + x[2])/6, exactly x[1] where it rests already: the new origin. Its place
- * is one that it can have come to in order, so that it can go to the route there and on along it; at a corner on the element
- * before.
+ * The spline at sample 1 is x[1] + (x[0] - 2 x[1] + x[2])/6, exactly x[1] where it rests already:
+ * the new origin. Its place is one that it can have come to in order, so that it can go to the
+ * route there and on along it; at a corner on the element before.
  */
 void takt_window_rest(struct window *w, const struct route *r, const struct order *order)
 {
@@ -365,8 +376,8 @@ static bool passes_near(const struct window *w, const struct route *r, uint32_t 
 }
 
 /*
- * A sharp corner is not left behind before the curve has been near it: where both sides lie close together, a sample may
- * be nearer to the far side while it is still on its way to the corner.
+ * A sharp corner is not left behind before the curve has been near it: where both sides lie close
+ * together, a sample may be nearer to the far side while it is still on its way to the corner.
  */
 static void stop_at_corner(const struct window *w, const struct route *r, unsigned i,
                            const struct window_spot *before, const struct window_spot *here,
@@ -381,7 +392,10 @@ static void stop_at_corner(const struct window *w, const struct route *r, unsign
     }
 }
 
-/* Fixed samples have their place already; places never go back, nor do elements at the junction of two. */
+/*
+ * Fixed samples have their place already; places never go back, nor do elements at the junction of
+ * two.
+ */
 void takt_window_locate(struct window *w, const struct route *r)
 {
     static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};

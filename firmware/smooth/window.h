@@ -1,14 +1,15 @@
 /*
- * The samples being smoothed: control points of a uniform cubic B-spline, one every interval of nominal time.
+ * The samples being smoothed: control points of a uniform cubic B-spline, one every interval of
+ * nominal time.
  *
  *     q(u) = sum of b_k(f) x[i + k], k = 0..3, for u = i + 1 + f: the piece i lies between samples i + 1 and i + 2
  *
- * Coordinates are integers: units from the window's origin, a unit being a power of two that is small enough for
- * differences of every order to be exact. What is handed on is rounded in this way once and for all, so pieces of
- * different windows fit together.
+ * Coordinates are integers: units from the window's origin, a unit being a power of two that is
+ * small enough for differences of every order to be exact. What is handed on is rounded in this way
+ * once and for all, so pieces of different windows fit together.
  *
- * at_mm tells where on the route the curve is beside each sample. The first SMOOTH_FIXED samples are kept for good, the
- * last ones as well while they are in the window.
+ * at_mm tells where on the route the curve is beside each sample. The first SMOOTH_FIXED samples
+ * are kept for good, the last ones as well while they are in the window.
  */
 #ifndef TAKT_SMOOTH_WINDOW_H
 #define TAKT_SMOOTH_WINDOW_H
@@ -34,7 +35,10 @@ struct window {
     lanes_int x[SMOOTH_SAMPLES_MAX]; /* one group of lanes after the other */
 };
 
-/* Where a sample, or a place of the curve, is: units from the origin, by slot; 0 in lanes that no slot has. */
+/*
+ * Where a sample, or a place of the curve, is: units from the origin, by slot; 0 in lanes that no
+ * slot has.
+ */
 struct window_spot {
     union {
         int32_t at[SMOOTH_SLOTS_MAX];
@@ -64,7 +68,9 @@ void takt_window_extend(struct window *w, const struct route *r);
 /* Drops the oldest samples. */
 void takt_window_drop(struct window *w, const struct route *r, unsigned count);
 
-/* Coordinates of sample i from slot to slot: lane slot % SMOOTH_LANES of group slot / SMOOTH_LANES. */
+/*
+ * Coordinates of sample i from slot to slot: lane slot % SMOOTH_LANES of group slot / SMOOTH_LANES.
+ */
 static inline int32_t window_x(const struct window *w, unsigned slot, unsigned i)
 {
     return w->x[slot / SMOOTH_LANES * w->capacity + i][slot % SMOOTH_LANES];

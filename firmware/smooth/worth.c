@@ -18,8 +18,9 @@ static void set_piece(const struct worth_window *now, unsigned i, struct worth_p
 }
 
 /*
- * The rate as the trapezoidal reference has it: r^2 rises and falls by 2 r' d on a piece of d at most, from what it is where the
- * pieces begin. What follows them binds it no more than the last one does.
+ * The rate as the trapezoidal reference has it: r^2 rises and falls by 2 r' d on a piece of d at
+ * most, from what it is where the pieces begin. What follows them binds it no more than the last
+ * one does.
  */
 static void find_pace(const struct worth_window *now, float from)
 {
@@ -40,7 +41,10 @@ static void find_pace(const struct worth_window *now, float from)
     }
 }
 
-/* The place where the path rests first behind the start of an element, or its end: index of an element. */
+/*
+ * The place where the path rests first behind the start of an element, or its end: index of an
+ * element.
+ */
 static uint32_t next_rest(const struct worth_window *now, uint32_t element)
 {
     uint32_t i = element + 1;
@@ -51,7 +55,10 @@ static uint32_t next_rest(const struct worth_window *now, uint32_t element)
     return i;
 }
 
-/* A rest that the curve has passed: the start of an element, and when; and when those that are kept end. */
+/*
+ * A rest that the curve has passed: the start of an element, and when; and when those that are kept
+ * end.
+ */
 struct passed {
     uint32_t element;
     float time;
@@ -99,8 +106,9 @@ static float go(const struct worth_window *now, float from, struct passed *last)
 }
 
 /*
- * What a part of a way from rest to rest takes: half of what getting going and braking take longer than its feed, r, and its
- * way at that; before the feed is reached sqrt(2 x r), x the way at the feed. all: what all of it takes; cruise: at its feed.
+ * What a part of a way from rest to rest takes: half of what getting going and braking take longer
+ * than its feed, r, and its way at that; before the feed is reached sqrt(2 x r), x the way at the
+ * feed. all: what all of it takes; cruise: at its feed.
  */
 static float time_of_part(float all, float cruise, float part)
 {
@@ -113,7 +121,7 @@ static float time_of_part(float all, float cruise, float part)
     return part > 0.5f ? all - time : time;
 }
 
-/* The last place at or before the start of an element, but behind first, where the path rests; or that one: index of an element. */
+/* The last rest of the path at or before the start of an element and behind first; else first. */
 static uint32_t rest_before(const struct worth_window *now, uint32_t element, uint32_t first)
 {
     while (element > first && !takt_exact_rests(now->route, now->machine, element)) {
@@ -122,7 +130,10 @@ static uint32_t rest_before(const struct worth_window *now, uint32_t element, ui
     return element;
 }
 
-/* From rest at the start of an element to where the pieces end: of the way between two rests a part. */
+/*
+ * From rest at the start of an element to where the pieces end: of the way between two rests a
+ * part.
+ */
 static float path_time(const struct worth_window *now, uint32_t first)
 {
     const struct route *r = now->route;
@@ -139,10 +150,16 @@ static float path_time(const struct worth_window *now, uint32_t first)
                         takt_route_time(r, from, start_mm, at_mm) / cruise);
 }
 
-/* A curve takes up to so many times what its pieces seem to take: of 1,200 random programs most are within it. */
+/*
+ * A curve takes up to so many times what its pieces seem to take: of 1,200 random programs most are
+ * within it.
+ */
 #define LONGER 1.04f
 
-/* Up to so many times the path's time on what is known may gain on what is not, where that has no rest yet. */
+/*
+ * Up to so many times the path's time on what is known may gain on what is not, where that has no
+ * rest yet.
+ */
 #define UNKNOWN 1.05f
 
 static float path_time_of_all(const struct worth_window *now)
@@ -151,7 +168,10 @@ static float path_time_of_all(const struct worth_window *now)
                            now->route->count);
 }
 
-/* How long a curve takes on all of the path that is known, if it takes so many times as long as that. */
+/*
+ * How long a curve takes on all of the path that is known, if it takes so many times as long as
+ * that.
+ */
 static float time_of_all(const struct worth_window *now, float times)
 {
     return (now->finished ? 2.0f : 1.0f) * now->rest_s + times * path_time_of_all(now);
@@ -186,8 +206,8 @@ bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
 }
 
 /*
- * To change over the curve must first come to rest, and the path get going from there. Of the stretch's time before the window what
- * is not known counts as none: the curve seems the quicker.
+ * To change over the curve must first come to rest, and the path get going from there. Of the
+ * stretch's time before the window what is not known counts as none: the curve seems the quicker.
  */
 bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 {

@@ -1,5 +1,6 @@
 /*
- * Whether a curve is worth it: whether it is as quick as the path that it smooths, which comes to rest where it turns.
+ * Whether a curve is worth it: whether it is as quick as the path that it smooths, which comes to
+ * rest where it turns.
  */
 #ifndef TAKT_SMOOTH_WORTH_H
 #define TAKT_SMOOTH_WORTH_H
@@ -7,7 +8,10 @@
 #include "smooth/verifier.h"
 #include "smooth/window.h"
 
-/* What binds the rate of nominal time on the pieces of a window: working memory, holds nothing between calls. */
+/*
+ * What binds the rate of nominal time on the pieces of a window: working memory, holds nothing
+ * between calls.
+ */
 struct worth_pace {
     float most[SMOOTH_SAMPLES_MAX];   /* of it on each piece, */
     float change[SMOOTH_SAMPLES_MAX]; /* by how much its square may change there, */
@@ -37,13 +41,19 @@ struct worth_since {
 };
 
 /*
- * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place in the window where it rests?
- * to_mm: that place, or the next one where there is none.
+ * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place
+ * in the window where it rests? to_mm: that place, or the next one where there is none.
  */
 bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm);
-/* From rest: how long a curve takes to the end of what is known, if it takes as large a part of the path's time as on its pieces. */
+/*
+ * From rest: how long a curve takes to the end of what is known, if it takes as large a part of the
+ * path's time as on its pieces.
+ */
 float takt_worth_time(const struct worth_window *now);
-/* Is the path so much quicker to where the pieces end, with what has been taken on the first stretch before, that a change is worth it? */
+/*
+ * Is the path so much quicker to where the pieces end, with what has been taken on the first
+ * stretch before, that a change is worth it?
+ */
 bool takt_worth_path(const struct worth_window *now, struct worth_since *since);
 
 #endif

@@ -1,8 +1,8 @@
 /*
  * One tick of an interpolator of unit steps: what the evaluation functions of this room hand out.
  *
- * Coordinates are whole steps. Two forms of each interpolator: improved, the leading axis steps at every tick and the
- * others along with it; plain, one axis steps at a tick.
+ * Coordinates are whole steps. Two forms of each interpolator: improved, the leading axis steps at
+ * every tick and the others along with it; plain, one axis steps at a tick.
  */
 #ifndef TAKT_STEP_EVALUATE_H
 #define TAKT_STEP_EVALUATE_H
@@ -12,7 +12,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Coordinates, and differences of them, stay below this: then every evaluation function fits 64 bits. */
+/*
+ * Coordinates, and differences of them, stay below this: then every evaluation function fits 64
+ * bits.
+ */
 #define EVALUATE_STEPS_MAX (INT64_C(1) << 30)
 
 enum evaluate_form { EVALUATE_IMPROVED, EVALUATE_PLAIN };

@@ -6,11 +6,12 @@
  *                2: a grows downwards, b shrinks
  *                3: b grows upwards,   a shrinks
  *
- * F = g^2 + s^2 - R^2 changes by 2 g + 1 with a step of g, by -2 s + 1 with one of s, by 2 g - 2 s + 2 with both.
- * Improved: while g < s, the first 45 degrees, g steps at every tick and s with it if F > 0; from there s, and g with it
- * if F < 0. Plain: F < 0 steps g, F > 0 steps s, F = 0 the leading one. So -2 R < F < 2 R, radially less than a step.
- * In the quadrant with the end, where both coordinates are monotone, the first that has its end value leaves the rest to
- * a line on the other. Source: seed 002, part A.
+ * F = g^2 + s^2 - R^2 changes by 2 g + 1 with a step of g, by -2 s + 1 with one of s, by 2 g - 2 s
+ * + 2 with both. Improved: while g < s, the first 45 degrees, g steps at every tick and s with it
+ * if F > 0; from there s, and g with it if F < 0. Plain: F < 0 steps g, F > 0 steps s, F = 0 the
+ * leading one. So -2 R < F < 2 R, radially less than a step. In the quadrant with the end, where
+ * both coordinates are monotone, the first that has its end value leaves the rest to a line on the
+ * other. Source: seed 002, part A.
  */
 #include "step/evaluate_arc.h"
 
@@ -28,7 +29,10 @@ struct quadrant {
 static const struct quadrant quadrants[4] = {
     {0, {1, -1}}, {1, {-1, -1}}, {0, {-1, 1}}, {1, {1, 1}}};
 
-/* The quadrant that begins at p or holds it: its growing coordinate may be 0 there, the shrinking one not. */
+/*
+ * The quadrant that begins at p or holds it: its growing coordinate may be 0 there, the shrinking
+ * one not.
+ */
 static unsigned quadrant_of(const int64_t p[2])
 {
     if (p[1] > 0 && p[0] >= 0) {
@@ -196,7 +200,10 @@ bool takt_evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick
     return true;
 }
 
-/* f0 = V max(|I|, |J|) / (h R), plain V (|I| + |J|) / (h R), with I and J of this place, brought onto the circle */
+/*
+ * f0 = V max(|I|, |J|) / (h R), plain V (|I| + |J|) / (h R), with I and J of this place, brought
+ * onto the circle
+ */
 double takt_evaluate_arc_rate(const struct evaluate_arc *arc)
 {
     const double a = (double)evaluate_size(arc->at[0]);

@@ -1,6 +1,6 @@
 /*
- * An arc of unit steps through any number of quadrants and octants. Radially the error stays below one step, and the
- * end is exact.
+ * An arc of unit steps through any number of quadrants and octants. Radially the error stays below
+ * one step, and the end is exact.
  */
 #ifndef TAKT_STEP_EVALUATE_ARC_H
 #define TAKT_STEP_EVALUATE_ARC_H
@@ -19,7 +19,10 @@ struct evaluate_arc_config {
         turns; /* whole turns before the rest from start to end; 1 and equal ends: a full circle */
 };
 
-/* Inside, the arc turns clockwise about the origin in coordinates a and b; counter-clockwise swaps them. */
+/*
+ * Inside, the arc turns clockwise about the origin in coordinates a and b; counter-clockwise swaps
+ * them.
+ */
 struct evaluate_arc {
     enum evaluate_form form;
     bool swapped;
@@ -38,12 +41,15 @@ struct evaluate_arc {
 
 void takt_evaluate_arc_begin(struct evaluate_arc *arc, const struct evaluate_arc_config *config);
 
-/* The next tick; bit 0 of its masks is the first axis of the plane, bit 1 the second. False: the end is reached. */
+/*
+ * The next tick; bit 0 of its masks is the first axis of the plane, bit 1 the second. False: the
+ * end is reached.
+ */
 bool takt_evaluate_arc_next(struct evaluate_arc *arc, struct evaluate_tick *tick);
 
 /*
- * Ticks a second for a path speed of one step a second, here and now: improved max(|a|, |b|) / R, plain
- * (|a| + |b|) / R. It follows the angle, so that the path is passed at constant speed.
+ * Ticks a second for a path speed of one step a second, here and now: improved max(|a|, |b|) / R,
+ * plain (|a| + |b|) / R. It follows the angle, so that the path is passed at constant speed.
  */
 double takt_evaluate_arc_rate(const struct evaluate_arc *arc);
 

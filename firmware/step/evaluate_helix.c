@@ -1,12 +1,13 @@
 /*
- * Improved: what leads is whatever steps most often just here, the arc, max(|a|, |b|) steps a radian, or the straight axis
- * with the largest increment. It steps at every tick; everything else follows the place it has come to. That place is an
- * angle, not the leading coordinate of the arc: in proportion to the latter a straight axis would be off by 4.2 % of its
- * travel in an octant.
+ * Improved: what leads is whatever steps most often just here, the arc, max(|a|, |b|) steps a
+ * radian, or the straight axis with the largest increment. It steps at every tick; everything else
+ * follows the place it has come to. That place is an angle, not the leading coordinate of the arc:
+ * in proportion to the latter a straight axis would be off by 4.2 % of its travel in an octant.
  *
- * Plain: as the plain line, with the plain arc as one of the axes. What has the longer way leads, the arc with R sweep
- * steps or the straight axis. One axis steps at a tick: whichever is behind the place of what leads, else that one. So the
- * point keeps to its circle as the plain arc does, and nothing gets farther than a step from its place.
+ * Plain: as the plain line, with the plain arc as one of the axes. What has the longer way leads,
+ * the arc with R sweep steps or the straight axis. One axis steps at a tick: whichever is behind
+ * the place of what leads, else that one. So the point keeps to its circle as the plain arc does,
+ * and nothing gets farther than a step from its place.
  */
 #include "step/evaluate_helix.h"
 
@@ -20,7 +21,10 @@
 #define PACE_ROOM       0.005
 #define PACE_ROOM_HELIX 0.5
 
-/* Steps by which the leading straight axis may be behind the arc's point, or that behind it, along the arc. */
+/*
+ * Steps by which the leading straight axis may be behind the arc's point, or that behind it, along
+ * the arc.
+ */
 #define BEHIND_MAX 0.8
 
 static void set_straight(struct evaluate_helix *h, const int64_t delta[AXIS_COUNT])
@@ -65,8 +69,9 @@ static double straight_spacing(const struct evaluate_helix *h)
 }
 
 /*
- * Which of both has the smaller step here? Where they are nearly equal, either can fall behind the other, because the arc
- * makes 0.7 to 1.4 steps of its way at a tick: then the one that is behind goes on alone.
+ * Which of both has the smaller step here? Where they are nearly equal, either can fall behind the
+ * other, because the arc makes 0.7 to 1.4 steps of its way at a tick: then the one that is behind
+ * goes on alone.
  */
 static bool arc_leads(const struct evaluate_helix *h)
 {
@@ -108,7 +113,10 @@ static void step_straight(struct evaluate_helix *h, unsigned axis, struct evalua
     tick->direction |= (uint8_t)(h->direction & 1U << axis);
 }
 
-/* Straight axes that are more than half a step behind the place step; the last tick brings all to their end. */
+/*
+ * Straight axes that are more than half a step behind the place step; the last tick brings all to
+ * their end.
+ */
 static void follow(struct evaluate_helix *h, double progress, struct evaluate_tick *tick)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
@@ -122,11 +130,11 @@ static void follow(struct evaluate_helix *h, double progress, struct evaluate_ti
 }
 
 /*
- * Halfway to the next tick: at is the place that has been reached, spacing its part of the way. A lattice point is up to a
- * step before or behind its place on the arc, and ticks that went after it would come in bursts. So the distance from one
- * tick to the next is the even one, and goes after the lattice by a part of what it is off, PACE_GAIN, at most by
- * PACE_ROOM of itself. Where arc and straight axes take turns there are more ticks than either has steps: there the room
- * is wider.
+ * Halfway to the next tick: at is the place that has been reached, spacing its part of the way. A
+ * lattice point is up to a step before or behind its place on the arc, and ticks that went after it
+ * would come in bursts. So the distance from one tick to the next is the even one, and goes after
+ * the lattice by a part of what it is off, PACE_GAIN, at most by PACE_ROOM of itself. Where arc and
+ * straight axes take turns there are more ticks than either has steps: there the room is wider.
  */
 static void pace(struct evaluate_helix *h, double at, double spacing)
 {
@@ -225,8 +233,9 @@ static struct leader find_leader(const struct evaluate_helix *h)
 }
 
 /*
- * With r steps for one of the leader's, and a step taken as soon as the lag is above t, the lag stays above t - 1 and at
- * most t + r: evenly on both sides, (1 + r) / 2 <= 1, with t = (1 - r) / 2.
+ * With r steps for one of the leader's, and a step taken as soon as the lag is above t, the lag
+ * stays above t - 1 and at most t + r: evenly on both sides, (1 + r) / 2 <= 1, with t = (1 - r) /
+ * 2.
  */
 static bool is_behind(double lag, double steps, const struct leader *leader)
 {

@@ -1,6 +1,7 @@
 /*
- * An arc of unit steps with any number of further axes that move in proportion to its angle: a helix, over any octants.
- * Radially, and on every straight axis, the error stays below one step; and so does that along the arc.
+ * An arc of unit steps with any number of further axes that move in proportion to its angle: a
+ * helix, over any octants. Radially, and on every straight axis, the error stays below one step;
+ * and so does that along the arc.
  */
 #ifndef TAKT_STEP_EVALUATE_HELIX_H
 #define TAKT_STEP_EVALUATE_HELIX_H
@@ -21,14 +22,20 @@ struct evaluate_helix {
     double due;               /* of the next tick */
 };
 
-/* plane: the arc's axes, different ones. delta: increments in steps; those of the plane are the arc's affair. */
+/*
+ * plane: the arc's axes, different ones. delta: increments in steps; those of the plane are the
+ * arc's affair.
+ */
 void takt_evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
                                const unsigned plane[2], const int64_t delta[AXIS_COUNT]);
 
 /* The next tick. False: the end has been reached, *tick is empty. */
 bool takt_evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick);
 
-/* Which part of the way, 0 ... 1, has been done when the next tick is due, at constant speed evenly. 1 at the end. */
+/*
+ * Which part of the way, 0 ... 1, has been done when the next tick is due, at constant speed
+ * evenly. 1 at the end.
+ */
 double takt_evaluate_helix_due(const struct evaluate_helix *h);
 
 #endif

@@ -3,9 +3,9 @@
  *
  *     F = a_end b - b_end a
  *
- * is 0 on the line and F / a_end the distance of the lattice point from it along b. Improved: a steps at every tick, b
- * with it when F <= 0, so that -b_end < F <= a_end - b_end. Plain: any axis with F < 0 steps, else a.
- * Source: seed 002, part A.
+ * is 0 on the line and F / a_end the distance of the lattice point from it along b. Improved: a
+ * steps at every tick, b with it when F <= 0, so that -b_end < F <= a_end - b_end. Plain: any axis
+ * with F < 0 steps, else a. Source: seed 002, part A.
  */
 #include "step/evaluate_line.h"
 

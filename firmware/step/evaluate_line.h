@@ -1,5 +1,6 @@
 /*
- * A line of unit steps in any number of axes. The error never reaches one step on any axis, and the end is exact.
+ * A line of unit steps in any number of axes. The error never reaches one step on any axis, and the
+ * end is exact.
  */
 #ifndef TAKT_STEP_EVALUATE_LINE_H
 #define TAKT_STEP_EVALUATE_LINE_H
@@ -24,7 +25,10 @@ void takt_evaluate_line_begin(struct evaluate_line *l, enum evaluate_form form,
 /* The next tick. False: the end has been reached, *tick is empty. */
 bool takt_evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick);
 
-/* Ticks a second for a path speed of one step a second: improved |a| / sqrt(sum d^2), plain sum |d| / sqrt(sum d^2). */
+/*
+ * Ticks a second for a path speed of one step a second: improved |a| / sqrt(sum d^2), plain sum |d|
+ * / sqrt(sum d^2).
+ */
 double takt_evaluate_line_rate(const struct evaluate_line *l);
 
 #endif

@@ -133,7 +133,10 @@ static void read_encoders(struct steps *s, const struct step_port *port)
     }
 }
 
-/* Is the way to the target short enough for the drive's rate, and its end a position? NaN fails the comparisons. */
+/*
+ * Is the way to the target short enough for the drive's rate, and its end a position? NaN fails the
+ * comparisons.
+ */
 static void check_way(struct steps *s, const struct point *to)
 {
     const double cycle_s = 1e-6 * (double)s->config.cycle_us;
@@ -168,8 +171,9 @@ static double distance(const struct steps *s, const struct point *a, const struc
 }
 
 /*
- * A new block: evenly to its start, which includes whatever the block before has left over and blocks too short to be
- * seen; then along its curve. The cycle is divided in proportion to both ways.
+ * A new block: evenly to its start, which includes whatever the block before has left over and
+ * blocks too short to be seen; then along its curve. The cycle is divided in proportion to both
+ * ways.
  */
 static void enter_path(struct steps *s, const struct step_port *port)
 {

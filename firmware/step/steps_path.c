@@ -1,6 +1,7 @@
 /*
- * The forms by evaluation functions along a block's curve: which axes step is told by the lattice, when by the setpoints.
- * A tick is due at a part of the curve, and setpoints say when that part has been passed.
+ * The forms by evaluation functions along a block's curve: which axes step is told by the lattice,
+ * when by the setpoints. A tick is due at a part of the curve, and setpoints say when that part has
+ * been passed.
  */
 #include "base/assert.h"
 #include "step/steps_private.h"
@@ -47,7 +48,10 @@ static bool is_evaluable_arc(const struct steps *s, const struct curve *c)
            maths_abs(c->arc.radius_change_mm) * ratio < OFF_CURVE_STEPS;
 }
 
-/* Whole turns that start, end and sweep on the lattice leave over. Below 0: the arc is shorter than its rounding. */
+/*
+ * Whole turns that start, end and sweep on the lattice leave over. Below 0: the arc is shorter than
+ * its rounding.
+ */
 static double lattice_turns(const struct curve *c, const struct evaluate_arc_config *arc)
 {
     const double from = takt_maths_atan2((double)arc->start[1], (double)arc->start[0]);

@@ -17,8 +17,9 @@ static inline bool steps_has(const struct steps *s, unsigned axis)
 }
 
 /*
- * Hands a tick to the port, at a part of the cycle; later, if the one before or the rate of a drive wants it. False: that
- * is after the end of the cycle; it is the first of the next one, and no other may follow.
+ * Hands a tick to the port, at a part of the cycle; later, if the one before or the rate of a drive
+ * wants it. False: that is after the end of the cycle; it is the first of the next one, and no
+ * other may follow.
  */
 bool takt_steps_emit(struct steps *s, const struct step_port *port, double part,
                      const struct evaluate_tick *tick);
@@ -28,12 +29,15 @@ void takt_steps_even(struct steps *s, const struct step_port *port, const struct
                      const struct point *to, struct steps_span span);
 
 /*
- * Takes up the path of a target: false, and no path is active, when its curve is not for evaluation functions. The axes
- * must be at the nearest positions to its start.
+ * Takes up the path of a target: false, and no path is active, when its curve is not for evaluation
+ * functions. The axes must be at the nearest positions to its start.
  */
 bool takt_steps_path_begin(struct steps *s, const struct steps_target *target);
 
-/* Where on the path's curve a point is, 0 ... 1, from the part already done on; -1: it is not on it. */
+/*
+ * Where on the path's curve a point is, 0 ... 1, from the part already done on; -1: it is not on
+ * it.
+ */
 double takt_steps_path_place(const struct steps *s, const struct point *p);
 
 /* All ticks due until that part of the curve. */

@@ -1,5 +1,6 @@
 /*
- * The numbers of struct machine as they are stored: one row each. Numbers are never used again for something else.
+ * The numbers of struct machine as they are stored: one row each. Numbers are never used again for
+ * something else.
  */
 #ifndef TAKT_STORAGE_SETTINGS_FIELDS_H
 #define TAKT_STORAGE_SETTINGS_FIELDS_H

@@ -22,7 +22,10 @@ _Static_assert(sizeof(struct axis_piece) == 8 * sizeof(float), "stored as eight 
 #define PAIRS      8U
 #define PAIR_BYTES 8U
 
-/* Coefficients are rounded to single precision: what a table's points keep to, the spline keeps to this much more. */
+/*
+ * Coefficients are rounded to single precision: what a table's points keep to, the spline keeps to
+ * this much more.
+ */
 #define ROUNDING 1.0001
 
 /* ---- a volume ---- */

@@ -1,6 +1,6 @@
 /*
- * The spindle's angle, speed and acceleration out of its encoder's counts: a filter of third order, so that neither
- * speed nor acceleration, while they are constant, put it off.
+ * The spindle's angle, speed and acceleration out of its encoder's counts: a filter of third order,
+ * so that neither speed nor acceleration, while they are constant, put it off.
  *
  * Units here are revolutions and control cycles.
  */

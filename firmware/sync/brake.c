@@ -1,7 +1,7 @@
 /*
- * With v the velocity, a the acceleration, A and J the limits: v + a|a|/(2J) is the velocity that is left when the
- * acceleration has been brought to 0. Its sign says which way to brake. Taken positive (else everything is mirrored),
- * the deceleration rises to d, may be kept, and falls to 0:
+ * With v the velocity, a the acceleration, A and J the limits: v + a|a|/(2J) is the velocity that
+ * is left when the acceleration has been brought to 0. Its sign says which way to brake. Taken
+ * positive (else everything is mirrored), the deceleration rises to d, may be kept, and falls to 0:
  *
  *     jerk  -J for (a + d)/J,   0 for t,   +J for d/J
  *     v + a^2/(2J) = d^2/J + d t,   d = sqrt(J v + a^2/2) and t = 0 if that is not above A, else d = A

@@ -1,6 +1,6 @@
 /*
- * Coming to rest on a line as fast as acceleration and jerk allow, from any velocity and acceleration, and exactly at a
- * position if that is wanted. mm and s.
+ * Coming to rest on a line as fast as acceleration and jerk allow, from any velocity and
+ * acceleration, and exactly at a position if that is wanted. mm and s.
  */
 #ifndef TAKT_SYNC_BRAKE_H
 #define TAKT_SYNC_BRAKE_H
@@ -36,7 +36,10 @@ struct brake {
 struct brake_state takt_brake_advance(const struct brake_state *s, double jerk_mm_s3,
                                       double time_s);
 
-/* The farthest that a point gets in the positive direction when it comes to rest from now on: its position. */
+/*
+ * The farthest that a point gets in the positive direction when it comes to rest from now on: its
+ * position.
+ */
 double takt_brake_reach(const struct brake_state *s, const struct brake_limits *limits);
 
 /* To rest, wherever that is. */
@@ -44,8 +47,8 @@ void takt_brake_begin(struct brake *b, const struct brake_state *s,
                       const struct brake_limits *limits);
 
 /*
- * To rest at a position that takt_brake_reach(s) is not beyond, but the state after time_s of jerk_mm_s3 is: that jerk goes
- * on for the part of the time after which the reach is the position.
+ * To rest at a position that takt_brake_reach(s) is not beyond, but the state after time_s of
+ * jerk_mm_s3 is: that jerk goes on for the part of the time after which the reach is the position.
  */
 void takt_brake_begin_at(struct brake *b, const struct brake_state *s,
                          const struct brake_limits *limits, double jerk_mm_s3, double time_s,

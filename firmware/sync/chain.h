@@ -1,5 +1,6 @@
 /*
- * Blocks of a thread that are run without a stop between: where each begins on the line, and at which angle.
+ * Blocks of a thread that are run without a stop between: where each begins on the line, and at
+ * which angle.
  */
 #ifndef TAKT_SYNC_CHAIN_H
 #define TAKT_SYNC_CHAIN_H

@@ -5,13 +5,14 @@
  *     acceleration  a* = a_target + k_v (v* - v)       within its limit
  *     jerk          j  = j_target + k_a (a* - a)       within its limit
  *
- * Within limits each step asks no more of the next than that can do. Without, the jerk being constant in a cycle, all
- * three poles are exp(-bandwidth cycle): with c = 1 - that, per cycle,
+ * Within limits each step asks no more of the next than that can do. Without, the jerk being
+ * constant in a cycle, all three poles are exp(-bandwidth cycle): with c = 1 - that, per cycle,
  *
  *     k_a = 3 c - 3/2 c^2 + 1/3 c^3,   k_v k_a = 3 c^2 - c^3,   k_x k_v k_a = c^3
  *
- * Rejected: to bound v* - v_target by (J e^2)^(1/3) and a* - a_target by (J (v* - v))^(1/2), what the jerk can take back.
- * It settles a large e sooner, but is up to three times as far off after a step of the spindle's acceleration.
+ * Rejected: to bound v* - v_target by (J e^2)^(1/3) and a* - a_target by (J (v* - v))^(1/2), what
+ * the jerk can take back. It settles a large e sooner, but is up to three times as far off after a
+ * step of the spindle's acceleration.
  */
 #include "sync/follower.h"
 
@@ -71,11 +72,13 @@ static double wanted_jerk(const struct follower *f, const struct follower_target
 }
 
 /*
- * The highest acceleration u at the end of the cycle from which velocity stays within V when u is taken away at once:
+ * The highest acceleration u at the end of the cycle from which velocity stays within V when u is
+ * taken away at once:
  *
  *     v + (a + u) t/2 + u^2/(2J) <= V   =>   u <= -J t/2 + sqrt(J^2 t^2/4 + 2 J (V - v - a t/2))
  *
- * In the cycle in which the acceleration changes its sign the mean velocity is above both ends by up to J t^2/72.
+ * In the cycle in which the acceleration changes its sign the mean velocity is above both ends by
+ * up to J t^2/72.
  */
 static double acceleration_for(const struct follower *f, double v, double a)
 {

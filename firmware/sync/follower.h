@@ -1,9 +1,9 @@
 /*
- * A point on a line that follows a target as closely as velocity, acceleration and jerk allow, and never passes an end
- * without being able to rest there: it then comes to rest on it, exactly.
+ * A point on a line that follows a target as closely as velocity, acceleration and jerk allow, and
+ * never passes an end without being able to rest there: it then comes to rest on it, exactly.
  *
- * Its jerk is constant in each cycle, so the setpoints are samples of a curve that keeps the limits everywhere; their
- * differences are means of its derivatives and keep them too.
+ * Its jerk is constant in each cycle, so the setpoints are samples of a curve that keeps the limits
+ * everywhere; their differences are means of its derivatives and keep them too.
  */
 #ifndef TAKT_SYNC_FOLLOWER_H
 #define TAKT_SYNC_FOLLOWER_H

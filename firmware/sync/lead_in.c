@@ -8,12 +8,15 @@
 #define PEAK_SECOND 5.7736
 
 /*
- * Its jerk is that of the middle of each cycle. Over fewer than three of them their sum depends on where they fall, and
- * takes the axes back: by 12 times the way over one cycle.
+ * Its jerk is that of the middle of each cycle. Over fewer than three of them their sum depends on
+ * where they fall, and takes the axes back: by 12 times the way over one cycle.
  */
 #define CYCLES_MIN 4.0
 
-/* Velocity follows s(t/T) up to v = pitch speed: T = max(PEAK_FIRST v/A, sqrt(PEAK_SECOND v/J)), way = speed T. */
+/*
+ * Velocity follows s(t/T) up to v = pitch speed: T = max(PEAK_FIRST v/A, sqrt(PEAK_SECOND v/J)),
+ * way = speed T.
+ */
 double takt_lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
                         double cycle_s)
 {

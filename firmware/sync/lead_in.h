@@ -1,5 +1,6 @@
 /*
- * The lead-in of a thread: from rest to synchronism by an electronic cam, a position for every angle.
+ * The lead-in of a thread: from rest to synchronism by an electronic cam, a position for every
+ * angle.
  *
  *   x |                      /
  *     |                    /   x = pitch (angle - zero): the thread, whatever the spindle's speed was
@@ -8,8 +9,8 @@
  *     |_________---'__/________  angle
  *          start    zero    start + way
  *
- * It begins half its way before the zero angle, and half its way in pitches behind the start of the move it is on the
- * thread.
+ * It begins half its way before the zero angle, and half its way in pitches behind the start of the
+ * move it is on the thread.
  */
 #ifndef TAKT_SYNC_LEAD_IN_H
 #define TAKT_SYNC_LEAD_IN_H
@@ -33,7 +34,9 @@ struct lead_in_place {
     double first, second, third;
 };
 
-/* The way that a spindle of speed_rev_s > 0 needs: the axes then keep their acceleration and jerk. */
+/*
+ * The way that a spindle of speed_rev_s > 0 needs: the axes then keep their acceleration and jerk.
+ */
 double takt_lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
                         double cycle_s);
 

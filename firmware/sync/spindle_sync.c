@@ -14,7 +14,7 @@
 /* Counts that an angle may be off by itself. */
 #define COUNTS_OFF 2.0
 
-/* A spindle that was at its limit may be faster than it by this part: the axes lag a little then. */
+/* A spindle at its limit may be faster than it by this part: the axes lag a little then. */
 #define SPEED_ROOM 0.01
 
 #define COUNT_PART 0.1
@@ -91,8 +91,8 @@ static void fail(struct spindle_sync *l, enum takt_error code, double value, dou
 /* -- before the thread -- */
 
 /*
- * Steps of an encoder's counts, pitch/counts each, come through the filters as jerk of about their height times the
- * bandwidth cubed: they get COUNT_PART of the axes' jerk.
+ * Steps of an encoder's counts, pitch/counts each, come through the filters as jerk of about their
+ * height times the bandwidth cubed: they get COUNT_PART of the axes' jerk.
  */
 static double bandwidth_of(const struct spindle_sync *l)
 {
@@ -121,8 +121,8 @@ static void begin(struct spindle_sync *l, double commanded_rpm)
 }
 
 /*
- * May it be begun? Not in the cycle that has passed something, which may command the spindle; not before the way out of
- * the hole is on the path.
+ * May it be begun? Not in the cycle that has passed something, which may command the spindle; not
+ * before the way out of the hole is on the path.
  */
 static bool can_begin(const struct motion *m)
 {
@@ -189,8 +189,8 @@ static bool check_length(struct spindle_sync *l, double rev_s)
 }
 
 /*
- * The zero angle: a whole revolution, where the encoder's index is; for a thread that goes on, where the one before
- * ended. The next one whose lead-in has not begun.
+ * The zero angle: a whole revolution, where the encoder's index is; for a thread that goes on,
+ * where the one before ended. The next one whose lead-in has not begun.
  */
 static double zero_angle(const struct spindle_sync *l, double rev)
 {
@@ -200,7 +200,7 @@ static double zero_angle(const struct spindle_sync *l, double rev)
     return base + takt_maths_ceil(rev + 0.5 * l->lead_in.way_rev - base);
 }
 
-/* That the lead-in is made for: one that is below the command now, by more than its room, may come up to it. */
+/* What the lead-in is made for: one below the command by more than its room may come up. */
 static double lead_in_speed(const struct spindle_sync *l, double now_rev_s)
 {
     const double commanded = maths_abs(l->before_rpm) / SECONDS_PER_MINUTE;
@@ -256,7 +256,7 @@ static struct lead_in_place place_at(const struct spindle_sync *l, double rev)
     };
 }
 
-/* x' = f' w,  x'' = f'' w^2 + f' a,  x''' = f''' w^3 + 3 f'' w a   by angle, w and a of the spindle */
+/* x' = f' w, x'' = f'' w^2 + f' a, x''' = f''' w^3 + 3 f'' w a; w, a: of the spindle */
 static struct follower_target target_of(const struct spindle_sync *l)
 {
     const double before = l->config.ahead_cycles - 1.0;
@@ -322,7 +322,7 @@ static void watch(struct spindle_sync *l)
     }
 }
 
-/* The end that is not passed: of the thread; in a hole a little below the bottom; then the start. */
+/* The end that is not passed: of the thread; a little below the hole's bottom; then the start. */
 static struct follower_end end_of(const struct spindle_sync *l)
 {
     if (l->out) {

@@ -3,8 +3,9 @@
  *
  *     encoder -> angle.h -> lead_in.h (what position belongs to the angle) -> follower.h (limits) -> setpoint
  *
- * struct motion stops before a block that follows the spindle and hands it over (motion/handover.h); takt_spindle_sync_cycle executes
- * it, and hands back at its end. See README.md.
+ * struct motion stops before a block that follows the spindle and hands it over
+ * (motion/handover.h); takt_spindle_sync_cycle executes it, and hands back at its end. See
+ * README.md.
  */
 #ifndef TAKT_SYNC_SPINDLE_SYNC_H
 #define TAKT_SYNC_SPINDLE_SYNC_H
@@ -26,8 +27,8 @@
 
 struct spindle_sync_config {
     double cycle_s;
-    double
-        ahead_cycles; /* from the reading of an angle to the axes' being at that cycle's setpoint; >= 1 */
+    /* from the reading of an angle to the axes' being at that cycle's setpoint; >= 1 */
+    double ahead_cycles;
     double tolerance_mm; /* farther off the angle than this is an alarm; > 0 */
     double counts;       /* of the encoder in a revolution; > 0 */
     double ramp_rpm_s;   /* of the spindle's drive; > 0 */
@@ -68,7 +69,8 @@ struct spindle_sync {
 
 enum spindle_sync_result {
     SPINDLE_SYNC_CYCLE, /* the record holds this cycle */
-    SPINDLE_SYNC_FAILED /* the axes stand, and takt_spindle_sync_get_alarm says why: no cycle was made */
+    /* the axes stand, and takt_spindle_sync_get_alarm says why: no cycle was made */
+    SPINDLE_SYNC_FAILED
 };
 
 void takt_spindle_sync_init(struct spindle_sync *l, const struct spindle_sync_config *config);
@@ -76,7 +78,10 @@ void takt_spindle_sync_init(struct spindle_sync *l, const struct spindle_sync_co
 /* A new program: what was being executed is forgotten, the spindle goes on turning. */
 void takt_spindle_sync_restart(struct spindle_sync *l);
 
-/* Every control cycle, whatever the axes do. spindle: as long as takt_spindle_sync_cycle is called in it. */
+/*
+ * Every control cycle, whatever the axes do. spindle: as long as takt_spindle_sync_cycle is called
+ * in it.
+ */
 static inline void spindle_sync_measure(struct spindle_sync *l,
                                         const struct spindle_feedback *spindle)
 {
@@ -85,7 +90,10 @@ static inline void spindle_sync_measure(struct spindle_sync *l,
     angle_measure(&l->angle, spindle->angle_rev);
 }
 
-/* Instead of takt_motion_cycle when that says MOTION_HANDED_OVER. commanded_rpm: of the spindle, signed. */
+/*
+ * Instead of takt_motion_cycle when that says MOTION_HANDED_OVER. commanded_rpm: of the spindle,
+ * signed.
+ */
 enum spindle_sync_result takt_spindle_sync_cycle(struct spindle_sync *l, struct motion *m,
                                                  const struct motion_operator *wanted,
                                                  double commanded_rpm, struct cycle_record *record);

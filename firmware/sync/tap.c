@@ -2,7 +2,9 @@
 
 #include "base/maths.h"
 
-/* From a command to the spindle's obeying it, at most; of its ramp, what is used in slowing down. */
+/*
+ * From a command to the spindle's obeying it, at most; of its ramp, what is used in slowing down.
+ */
 #define DELAY_S   0.02
 #define RAMP_PART 0.5
 
@@ -18,8 +20,9 @@ double takt_tap_turns(const struct tap *t)
 }
 
 /*
- * Turning back at once takes w delay + w^2/(2 ramp) more turns. As long as there are more than these the speed is that
- * from which the rest can be slowed down in: w = sqrt(2 part ramp (turns left - w delay)).
+ * Turning back at once takes w delay + w^2/(2 ramp) more turns. As long as there are more than
+ * these the speed is that from which the rest can be slowed down in: w = sqrt(2 part ramp (turns
+ * left - w delay)).
  */
 double takt_tap_command(struct tap *t, double turns_left, double speed_rev_s)
 {

@@ -1,5 +1,6 @@
 /*
- * The spindle's part in rigid tapping: slower towards the bottom, so that it turns back there and not below, then out.
+ * The spindle's part in rigid tapping: slower towards the bottom, so that it turns back there and
+ * not below, then out.
  */
 #ifndef TAKT_SYNC_TAP_H
 #define TAKT_SYNC_TAP_H
@@ -16,7 +17,10 @@ struct tap {
 /* Turns that turning back takes at least. */
 double takt_tap_turns(const struct tap *t);
 
-/* Each cycle: the speed to command, positive into the hole. turns_left: to the bottom, speed_rev_s: as measured. */
+/*
+ * Each cycle: the speed to command, positive into the hole. turns_left: to the bottom, speed_rev_s:
+ * as measured.
+ */
 double takt_tap_command(struct tap *t, double turns_left, double speed_rev_s);
 
 #endif

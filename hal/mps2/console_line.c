@@ -13,12 +13,15 @@ static struct {
     bool is_unread;
 } line;
 
-/* After this many interrupts without a byte sent nobody reads: each control cycle has one or more, so 0.2 s at 1 ms. */
+/*
+ * After this many interrupts without a byte sent nobody reads: each control cycle has one or more,
+ * so 0.2 s at 1 ms.
+ */
 #define STILL_MAX 200
 
 /*
- * The line's interrupt makes room. While nobody reads what does not fit is dropped, since the panel would have to wait; the
- * first piece that fits shows that somebody does again.
+ * The line's interrupt makes room. While nobody reads what does not fit is dropped, since the panel
+ * would have to wait; the first piece that fits shows that somebody does again.
  */
 static void write(void *context, const char *text, size_t length)
 {

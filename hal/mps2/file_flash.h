@@ -1,6 +1,7 @@
 /*
- * Flash that is kept in a file of the computer that QEMU runs on: what has been erased and programmed is in it at once, byte
- * by byte, so that an image that is stopped at any moment finds there what it has left behind.
+ * Flash that is kept in a file of the computer that QEMU runs on: what has been erased and
+ * programmed is in it at once, byte by byte, so that an image that is stopped at any moment finds
+ * there what it has left behind.
  */
 #ifndef TAKT_MPS2_FILE_FLASH_H
 #define TAKT_MPS2_FILE_FLASH_H

@@ -1,14 +1,15 @@
 /*
- * The firmware on an MPS2 board in QEMU, with everything it has on a machine: the control cycle in the SysTick's
- * interrupt, drives on CAN, an operator's panel on Modbus RTU, a log.
+ * The firmware on an MPS2 board in QEMU, with everything it has on a machine: the control cycle in
+ * the SysTick's interrupt, drives on CAN, an operator's panel on Modbus RTU, a log.
  *
  *     UART0   panel, Modbus RTU, unit 1
  *     UART1   drives, CAN as SLCAN
  *     UART2   log
  *     UART3   console for senders of Grbl, of takt-mps2-grbl alone
  *
- * A serial line carries some 200 to 550 cycles a second, less than the machine asks for. So a cycle begins at the next
- * millisecond after the drives have answered the last one; setpoints do not depend on it.
+ * A serial line carries some 200 to 550 cycles a second, less than the machine asks for. So a cycle
+ * begins at the next millisecond after the drives have answered the last one; setpoints do not
+ * depend on it.
  */
 #include "mps2/board.h"
 #include "mps2/console_line.h"
@@ -24,7 +25,10 @@
 
 #define PANEL_UNIT 1
 
-/* QEMU and a busy computer leave long gaps between the bytes of a frame: only a line that has gone silent ends one. */
+/*
+ * QEMU and a busy computer leave long gaps between the bytes of a frame: only a line that has gone
+ * silent ends one.
+ */
 #define PANEL_GAP_US 1000000U
 
 #define TICK_US     1000U
@@ -33,7 +37,10 @@
 /* Until somebody is heard on the bus. */
 #define TICKS_ANNOUNCE 200U
 
-/* Until all drives are in step a cycle takes this many ticks: they boot by the clock of their own side. */
+/*
+ * Until all drives are in step a cycle takes this many ticks: they boot by the clock of their own
+ * side.
+ */
 #define TICKS_STARTING 5U
 /* One that has been in step and does not answer for so long is given up. */
 #define TICKS_PATIENCE 5000U
@@ -51,8 +58,8 @@ static struct board {
 /* -- what the image asks of the board -- */
 
 /*
- * The SysTick counts down. A tick that falls between the readings makes them be taken again; one that waits, since what
- * asks is as urgent as its interrupt, has not been counted yet.
+ * The SysTick counts down. A tick that falls between the readings makes them be taken again; one
+ * that waits, since what asks is as urgent as its interrupt, has not been counted yet.
  */
 static uint32_t now_us(void *context)
 {
@@ -148,7 +155,10 @@ static bool is_due(void)
     return true;
 }
 
-/* A cycle is late by the machine's own time, not by that of a slow serial line: none is counted as such. */
+/*
+ * A cycle is late by the machine's own time, not by that of a slow serial line: none is counted as
+ * such.
+ */
 void takt_port_systick(void)
 {
     const struct inputs inputs = inputs_idle();
@@ -195,7 +205,10 @@ static void open_embedded(void)
     takt_embedded_init(&board.embedded, &config);
 }
 
-/* Not inlined: on the stack its diagnostic does not lie beside the machine, where the deepest call begins. */
+/*
+ * Not inlined: on the stack its diagnostic does not lie beside the machine, where the deepest call
+ * begins.
+ */
 static __attribute__((noinline)) void refuse_damaged(void)
 {
     struct diagnostic damage;

@@ -1,6 +1,7 @@
 /*
- * The CMSDK UARTs of the MPS2 boards (Arm Cortex-M System Design Kit, 4.3), by interrupt in both directions. One byte
- * each way is all they hold; QEMU makes the other end wait meanwhile, so nothing is lost.
+ * The CMSDK UARTs of the MPS2 boards (Arm Cortex-M System Design Kit, 4.3), by interrupt in both
+ * directions. One byte each way is all they hold; QEMU makes the other end wait meanwhile, so
+ * nothing is lost.
  */
 #ifndef TAKT_MPS2_UART_H
 #define TAKT_MPS2_UART_H
@@ -11,8 +12,11 @@
 
 #define UART_COUNT 4
 
-/* Bytes that wait to be sent: a power of two. A cycle's frames (six drives: 22 bytes each of a PDO and an SDO), a reply of
- * Modbus (256), or the longest line of the log and some short ones; no cycle begins before the last one's frames have gone. */
+/*
+ * Bytes that wait to be sent: a power of two. A cycle's frames (six drives: 22 bytes each of a PDO
+ * and an SDO), a reply of Modbus (256), or the longest line of the log and some short ones; no
+ * cycle begins before the last one's frames have gone.
+ */
 #define UART_OUT_MAX 512
 
 struct uart {

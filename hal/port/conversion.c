@@ -1,7 +1,8 @@
 /*
- * Between doubles and 64-bit integers, for which no Cortex-M has an instruction. libgcc makes them of additions and
- * multiplications of doubles; here they are a shift and a rounding. The same values, by the same rules: to a double
- * rounded to nearest, ties to even; to an integer towards zero. What no integer holds is left to libgcc.
+ * Between doubles and 64-bit integers, for which no Cortex-M has an instruction. libgcc makes them
+ * of additions and multiplications of doubles; here they are a shift and a rounding. The same
+ * values, by the same rules: to a double rounded to nearest, ties to even; to an integer towards
+ * zero. What no integer holds is left to libgcc.
  */
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,10 +1,12 @@
 /*
- * Conversion between doubles and integers of 64 bits for a core with a unit for doubles, which converts 32 bits at once.
- * The compiler calls them by the names __aeabi_... (Run-time ABI for the Arm Architecture, 5.1.1).
+ * Conversion between doubles and integers of 64 bits for a core with a unit for doubles, which
+ * converts 32 bits at once. The compiler calls them by the names __aeabi_... (Run-time ABI for the
+ * Arm Architecture, 5.1.1).
  *
  *     n = 2^32 high + low
  *
- * Both parts are exact as doubles, so that their sum is rounded once, as it should. What no integer holds is left to libgcc.
+ * Both parts are exact as doubles, so that their sum is rounded once, as it should. What no integer
+ * holds is left to libgcc.
  */
 #include <stdint.h>
 

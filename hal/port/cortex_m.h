@@ -33,7 +33,9 @@ static inline volatile uint32_t *cortex_register(uintptr_t address)
 #define CORTEX_CPACR_FPU         (0xFU << 20) /* full access to the floating-point unit */
 #define CORTEX_AIRCR_RESET       0x05FA0004U
 
-/* Priorities: 0 is the most urgent; the number of bits a chip has are the upper ones of the byte. */
+/*
+ * Priorities: 0 is the most urgent; the number of bits a chip has are the upper ones of the byte.
+ */
 static inline void cortex_set_priority(unsigned interrupt, uint8_t priority)
 {
     *(volatile uint8_t *)(uintptr_t)(0xE000E400U + interrupt) = priority;
@@ -81,7 +83,10 @@ static inline void cortex_unlock(void *context)
     cortex_mask_from(0);
 }
 
-/* Sleeps until an interrupt, also one that came just before: masked, it wakes the core and is served after. */
+/*
+ * Sleeps until an interrupt, also one that came just before: masked, it wakes the core and is
+ * served after.
+ */
 static inline void cortex_sleep(void)
 {
     __asm volatile("cpsid i\n\twfi\n\tcpsie i\n\tisb" ::: "memory");

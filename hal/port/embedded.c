@@ -27,7 +27,10 @@ static void look_at_refusal(const struct embedded *e, struct panel_snapshot *sna
     (void)takt_diagnostic_text(&e->refusal, snapshot->alarm_text);
 }
 
-/* A snapshot into which a cycle has fallen may be half old: it is taken again. A cycle lasts longer than a look. */
+/*
+ * A snapshot into which a cycle has fallen may be half old: it is taken again. A cycle lasts longer
+ * than a look.
+ */
 static void look(void *context, struct panel_snapshot *snapshot)
 {
     struct embedded *e = context;

@@ -1,13 +1,14 @@
 /*
- * What every image of the firmware consists of, whatever processor it is for: the service, its panel on one serial line,
- * the program it is being sent, and a log. A port adds a timer, a CAN controller, two serial lines and a memory for
- * settings, and calls
+ * What every image of the firmware consists of, whatever processor it is for: the service, its
+ * panel on one serial line, the program it is being sent, and a log. A port adds a timer, a CAN
+ * controller, two serial lines and a memory for settings, and calls
  *
  *     takt_embedded_cycle        from the interrupt of the control cycle
  *     takt_embedded_take_byte    from the interrupt of the panel's line
  *     takt_embedded_background   from main, for ever
  *
- * takt_embedded_cycle may interrupt the other two, takt_embedded_take_byte may interrupt all. Nothing here waits.
+ * takt_embedded_cycle may interrupt the other two, takt_embedded_take_byte may interrupt all.
+ * Nothing here waits.
  */
 #ifndef TAKT_PORT_EMBEDDED_H
 #define TAKT_PORT_EMBEDDED_H
@@ -30,11 +31,16 @@ struct embedded_port {
     /* Keeps the control cycle from beginning until unlock; nothing nests. */
     void (*lock)(void *context);
     void (*unlock)(void *context);
-    /* Time that wraps: of bytes on the line, where it may be a millisecond off; of how long a cycle takes. */
+    /*
+     * Time that wraps: of bytes on the line, where it may be a millisecond off; of how long a cycle
+     * takes.
+     */
     uint32_t (*now_us)(void *context);
     uint32_t (*now_ns)(void *context);
-    /* Queues the bytes of a reply on the panel's line, after the silence that its rate asks for. Must not wait: the bytes
-     * are copied; a reply before the last one has gone is lost. */
+    /*
+     * Queues the bytes of a reply on the panel's line, after the silence that its rate asks for.
+     * Must not wait: the bytes are copied; a reply before the last one has gone is lost.
+     */
     void (*reply)(void *context, const uint8_t *bytes, size_t length);
     /* A line of the log, without its end; zero-terminated. What finds no room is lost. */
     void (*log)(void *context, const char *text);
@@ -42,8 +48,8 @@ struct embedded_port {
 };
 
 /*
- * What programs and their panel take. Only the processor touches it, so it may lie where nothing else reaches (startup.h).
- * Private.
+ * What programs and their panel take. Only the processor touches it, so it may lie where nothing
+ * else reaches (startup.h). Private.
  */
 struct embedded_core {
     struct controller_reader reader;
@@ -95,8 +101,9 @@ struct embedded {
 void takt_embedded_init(struct embedded *e, const struct embedded_config *config);
 
 /*
- * The machine must not run, and why: the image is damaged, its settings are, there is no CAN controller. The panel and
- * the log say so; the control cycle does nothing from then on, so no drive hears anything. Uploads are still taken.
+ * The machine must not run, and why: the image is damaged, its settings are, there is no CAN
+ * controller. The panel and the log say so; the control cycle does nothing from then on, so no
+ * drive hears anything. Uploads are still taken.
  */
 void takt_embedded_refuse(struct embedded *e, const struct diagnostic *why);
 
@@ -109,7 +116,10 @@ struct outputs takt_embedded_get_outputs(const struct embedded *e);
 /* A byte has come on the panel's line. */
 void takt_embedded_take_byte(struct embedded *e, uint8_t byte, uint32_t now_us);
 
-/* Reads and plans ahead, answers the panel, writes the log. Then the processor may sleep until the next interrupt. */
+/*
+ * Reads and plans ahead, answers the panel, writes the log. Then the processor may sleep until the
+ * next interrupt.
+ */
 void takt_embedded_background(struct embedded *e);
 
 #endif

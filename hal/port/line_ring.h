@@ -1,6 +1,7 @@
 /*
- * Bytes of a serial line and the silences between them, from its interrupt to the background. One writer, one reader, no
- * lock: the writer owns all but taken. Clocks of the two, and of the writer's interrupts, may differ by a little.
+ * Bytes of a serial line and the silences between them, from its interrupt to the background. One
+ * writer, one reader, no lock: the writer owns all but taken. Clocks of the two, and of the
+ * writer's interrupts, may differ by a little.
  */
 #ifndef TAKT_PORT_LINE_RING_H
 #define TAKT_PORT_LINE_RING_H

@@ -13,8 +13,8 @@ static int is_aligned(const void *at)
 }
 
 /*
- * All whole words: eight each time in 6 instructions, then four, two and one, as the bits of what is left say (16 is the
- * carry of a shift by 28, 8 the sign). Returns the bytes that are left.
+ * All whole words: eight each time in 6 instructions, then four, two and one, as the bits of what
+ * is left say (16 is the carry of a shift by 28, 8 the sign). Returns the bytes that are left.
  */
 static size_t copy_words(uint8_t **to, const uint8_t **from, size_t size)
 {

@@ -1,9 +1,10 @@
 /*
- * A program planned ahead (takt compile) on its way in: streamed through the panel's mailbox, checked as soon as its header
- * is there, and replayed while it comes.
+ * A program planned ahead (takt compile) on its way in: streamed through the panel's mailbox,
+ * checked as soon as its header is there, and replayed while it comes.
  *
- * The panel brings bytes, the controller's background takes them: these two may be two threads. Everything else is called
- * by the control thread, between two cycles, and for what the panel has ordered while the panel waits.
+ * The panel brings bytes, the controller's background takes them: these two may be two threads.
+ * Everything else is called by the control thread, between two cycles, and for what the panel has
+ * ordered while the panel waits.
  */
 #ifndef TAKT_PORT_PLAN_QUEUE_H
 #define TAKT_PORT_PLAN_QUEUE_H
@@ -19,8 +20,8 @@
 #include <stdint.h>
 
 /*
- * Bytes, a power of two: some 1.3 s of motion beside the 2 s that the replay itself holds. A build may have others, for
- * two chunks of the panel at least.
+ * Bytes, a power of two: some 1.3 s of motion beside the 2 s that the replay itself holds. A build
+ * may have others, for two chunks of the panel at least.
  */
 #ifndef PLAN_QUEUE_MAX
 #define PLAN_QUEUE_MAX 4096
@@ -50,7 +51,10 @@ void takt_plan_queue_init(struct plan_queue *q, const struct service *service);
 /* What the panel brings its bytes to. */
 struct panel_store takt_plan_queue_get_store(struct plan_queue *q);
 
-/* Its PLAN_QUEUE_MAX bytes, at a multiple of 8, for something else while no program runs; a plan that waits is given up. */
+/*
+ * Its PLAN_QUEUE_MAX bytes, at a multiple of 8, for something else while no program runs; a plan
+ * that waits is given up.
+ */
 void *takt_plan_queue_lend(struct plan_queue *q);
 
 /* What the service starts. */

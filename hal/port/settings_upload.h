@@ -1,6 +1,6 @@
 /*
- * Settings brought through the panel's mailbox to flash: looked at as a whole before they count, which they do from the
- * next start on.
+ * Settings brought through the panel's mailbox to flash: looked at as a whole before they count,
+ * which they do from the next start on.
  */
 #ifndef TAKT_PORT_SETTINGS_UPLOAD_H
 #define TAKT_PORT_SETTINGS_UPLOAD_H

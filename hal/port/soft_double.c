@@ -1,19 +1,22 @@
 /*
- * Addition, division, square root and comparison of doubles for a core whose unit is for single precision alone. The
- * compiler calls them by the names __aeabi_d... (Run-time ABI for the Arm Architecture, 5.1.1). libgcc and the C library
- * have them too, but they divide bit by bit (README.md has the figures), and libgcc 12.2 subtracts wrongly: a power of two
- * less a number 33 binary orders smaller is off by the last bit, one subtraction in some millions.
+ * Addition, division, square root and comparison of doubles for a core whose unit is for single
+ * precision alone. The compiler calls them by the names __aeabi_d... (Run-time ABI for the Arm
+ * Architecture, 5.1.1). libgcc and the C library have them too, but they divide bit by bit
+ * (README.md has the figures), and libgcc 12.2 subtracts wrongly: a power of two less a number 33
+ * binary orders smaller is off by the last bit, one subtraction in some millions.
  *
- * Results are those of IEEE 754, rounded to nearest, ties to even, so they are the bits that a unit for doubles gives
- * (tests/target/target_arithmetic.py). What is infinite or no number, and for division also 0 and subnormal
- * numbers, is left to the library, whose functions the linker calls __real_...
+ * Results are those of IEEE 754, rounded to nearest, ties to even, so they are the bits that a unit
+ * for doubles gives (tests/target/target_arithmetic.py). What is infinite or no number, and for
+ * division also 0 and subnormal numbers, is left to the library, whose functions the linker calls
+ * __real_...
  *
- * Division and root work on integers, in digits of 27 bits. For 0 <= rest < divisor, both below 2^53, and x slightly below
- * 2^84 / divisor:
+ * Division and root work on integers, in digits of 27 bits. For 0 <= rest < divisor, both below
+ * 2^53, and x slightly below 2^84 / divisor:
  *
  *     digit = rest/2^21 x / 2^36     rest' = 2^27 rest - digit divisor
  *
- * The digit is the right one or at most 2 too small, which subtracting the divisor once or twice mends.
+ * The digit is the right one or at most 2 too small, which subtracting the divisor once or twice
+ * mends.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -170,8 +173,9 @@ HELPER double soft_double_add(double a, double b)
 /* -- division -- */
 
 /*
- * 2^63 / d for 2^31 <= d < 2^32, from below, with a relative error under 2^-27: 15 bits by the core's divider, one step
- * of Newton's x' = x + x (1 - x d), and 8 taken off, which is more than truncation can have added.
+ * 2^63 / d for 2^31 <= d < 2^32, from below, with a relative error under 2^-27: 15 bits by the
+ * core's divider, one step of Newton's x' = x + x (1 - x d), and 8 taken off, which is more than
+ * truncation can have added.
  */
 static uint32_t reciprocal(uint32_t d)
 {
@@ -181,7 +185,10 @@ static uint32_t reciprocal(uint32_t d)
     return x + (high_product(x, missing) << 1) - 8U;
 }
 
-/* The next digit of rest / divisor; *rest becomes what is left, times 2^27. x: of the divisor's upper 32 bits. */
+/*
+ * The next digit of rest / divisor; *rest becomes what is left, times 2^27. x: of the divisor's
+ * upper 32 bits.
+ */
 static uint32_t next_digit(uint64_t *rest, uint64_t divisor, uint32_t x)
 {
     uint32_t digit = high_product((uint32_t)(*rest >> 21), x) >> 4;
@@ -263,7 +270,10 @@ static uint64_t root_second(uint32_t r, uint64_t rest)
     return root;
 }
 
-/* A common positive number is fraction 2^(exponent - BIAS - 52); root: root(fraction) 2^half, the exponent even. */
+/*
+ * A common positive number is fraction 2^(exponent - BIAS - 52); root: root(fraction) 2^half, the
+ * exponent even.
+ */
 static double common_root(uint64_t bits)
 {
     const uint32_t exponent = exponent_of(bits);

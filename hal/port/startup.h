@@ -7,19 +7,21 @@
 typedef void (*startup_vector)(void);
 
 /*
- * A port defines the interrupts of its chip as an array in the section ".vectors.interrupts", the first for interrupt 0:
+ * A port defines the interrupts of its chip as an array in the section ".vectors.interrupts", the
+ * first for interrupt 0:
  *
  *     STARTUP_INTERRUPTS(port_interrupts, COUNT) = {[3] = uart_interrupt, ...};
  *
- * and replaces, where it has something to say, the handlers below by functions of the same names. An exception without a
- * handler of its own comes to takt_port_fault, which stays there.
+ * and replaces, where it has something to say, the handlers below by functions of the same names.
+ * An exception without a handler of its own comes to takt_port_fault, which stays there.
  */
 #define STARTUP_INTERRUPTS(name, count)                                                            \
     __attribute__((section(".vectors.interrupts"), used)) const startup_vector name[count]
 
 /*
- * For a variable without a first value: in the memory CORE of the port's linker script, which may be one that only the
- * processor reaches: no direct memory access. It is zero at the start like all others.
+ * For a variable without a first value: in the memory CORE of the port's linker script, which may
+ * be one that only the processor reaches: no direct memory access. It is zero at the start like all
+ * others.
  */
 #define STARTUP_CORE_MEMORY __attribute__((section(".bss.core")))
 

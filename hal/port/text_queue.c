@@ -109,8 +109,9 @@ static uint32_t end_of_lines(const struct text_queue *q)
 }
 
 /*
- * How far may be read: a program is read in whole lines, so a streamed one is handed out up to the end of a line. One
- * that fills the queue is too long for any program: it is handed out as it is, to be refused.
+ * How far may be read: a program is read in whole lines, so a streamed one is handed out up to the
+ * end of a line. One that fills the queue is too long for any program: it is handed out as it is,
+ * to be refused.
  */
 static uint32_t readable(const struct text_queue *q)
 {

@@ -1,9 +1,9 @@
 /*
  * The program of an image with little memory: its last bytes in a ring.
  *
- * A program that fits is kept whole, uploaded and started as often as wanted. A longer one is streamed: it is read while
- * it comes, each byte once, and has room for as many more as have been read. The panel brings bytes, the program reads
- * them; both run in the background.
+ * A program that fits is kept whole, uploaded and started as often as wanted. A longer one is
+ * streamed: it is read while it comes, each byte once, and has room for as many more as have been
+ * read. The panel brings bytes, the program reads them; both run in the background.
  */
 #ifndef TAKT_PORT_TEXT_QUEUE_H
 #define TAKT_PORT_TEXT_QUEUE_H
@@ -41,7 +41,10 @@ void takt_text_queue_use(struct text_queue *q, bool in_use);
 /* What the panel brings its bytes to. */
 struct panel_store takt_text_queue_get_store(struct text_queue *q);
 
-/* For struct service_programs: a source at the beginning. False: none, or its beginning has been read and is gone. */
+/*
+ * For struct service_programs: a source at the beginning. False: none, or its beginning has been
+ * read and is gone.
+ */
 bool takt_text_queue_open(void *queue, struct source *source);
 void takt_text_queue_adopt(void *queue);
 

@@ -1,11 +1,13 @@
 /*
- * A controller in another processor, cycle by cycle: what a run on the desk and an image say to each other.
+ * A controller in another processor, cycle by cycle: what a run on the desk and an image say to
+ * each other.
  *
  *     desk   setup, then for every cycle: inputs, frames received   ─→
  *     image                                ←─ frames sent, record, state, cost
  *
- * Structs travel as they lie in memory: both sides are little-endian and lay out numbers of fixed width alike, which the
- * sizes below hold them to; the first message compares what may differ between versions.
+ * Structs travel as they lie in memory: both sides are little-endian and lay out numbers of fixed
+ * width alike, which the sizes below hold them to; the first message compares what may differ
+ * between versions.
  */
 #ifndef TAKT_REMOTE_REMOTE_H
 #define TAKT_REMOTE_REMOTE_H
@@ -34,8 +36,8 @@ struct remote_hello {
 };
 
 /*
- * Then the desk: this, the machine, the parameters, the tools, and of each table its kind and size (struct remote_table)
- * and its bytes.
+ * Then the desk: this, the machine, the parameters, the tools, and of each table its kind and size
+ * (struct remote_table) and its bytes.
  */
 struct remote_setup {
     uint32_t magic;

@@ -1,9 +1,10 @@
 /*
- * The image of a run on the desk: the firmware's controller, told every cycle by the desk what its inputs are and what
- * has come over the bus. It runs as fast as both sides go; time is counted in cycles. remote/remote.h has the messages.
+ * The image of a run on the desk: the firmware's controller, told every cycle by the desk what its
+ * inputs are and what has come over the bus. It runs as fast as both sides go; time is counted in
+ * cycles. remote/remote.h has the messages.
  *
- * The words it is started with name its files: setup, program, the two ends of the talk, and the program as planned ahead,
- * if it is to be replayed.
+ * The words it is started with name its files: setup, program, the two ends of the talk, and the
+ * program as planned ahead, if it is to be replayed.
  */
 #include "base/assert.h"
 #include "correction/table_store.h"
@@ -19,7 +20,10 @@
 
 #define TOOLS_MAX 1000
 
-/* The frames of a cycle: of those received, what the controller has not had; and room for those it sends. */
+/*
+ * The frames of a cycle: of those received, what the controller has not had; and room for those it
+ * sends.
+ */
 struct bus {
     const struct classical_frame *received, *received_end;
     struct classical_frame *sent, *sent_end;

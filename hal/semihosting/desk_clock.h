@@ -1,6 +1,6 @@
 /*
- * What the image of a run on the desk measures its cycles with. Under -icount shift=0 it counts instructions, one a
- * nanosecond.
+ * What the image of a run on the desk measures its cycles with. Under -icount shift=0 it counts
+ * instructions, one a nanosecond.
  */
 #ifndef TAKT_SEMIHOSTING_DESK_CLOCK_H
 #define TAKT_SEMIHOSTING_DESK_CLOCK_H

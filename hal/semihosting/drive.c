@@ -1,6 +1,6 @@
 /*
- * The image of a drive: the firmware's servo, told by takt call by call what has come over the bus and what its motor does.
- * twin/twin.h has the messages.
+ * The image of a drive: the firmware's servo, told by takt call by call what has come over the bus
+ * and what its motor does. twin/twin.h has the messages.
  *
  * The words it is started with name its files: the two ends of the talk.
  */

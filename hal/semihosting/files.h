@@ -19,7 +19,9 @@ struct files {
 /* False: there is no such line. The first word is the image's own. */
 bool takt_files_begin(struct files *files);
 
-/* The handle of the file that the next word names; -1: there is no further word, or no such file. */
+/*
+ * The handle of the file that the next word names; -1: there is no further word, or no such file.
+ */
 int takt_files_open_next(struct files *files, enum semihosting_mode mode);
 
 /* All of size bytes; a pipe may give them in pieces. False: it has ended. */

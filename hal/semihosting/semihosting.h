@@ -1,6 +1,7 @@
 /*
- * What QEMU does for an image by semihosting (Semihosting for AArch32 and AArch64, 2.0, which that of RISC-V takes over):
- * files of the computer it runs on, and the end of the run. Each call stops the image until it is done.
+ * What QEMU does for an image by semihosting (Semihosting for AArch32 and AArch64, 2.0, which that
+ * of RISC-V takes over): files of the computer it runs on, and the end of the run. Each call stops
+ * the image until it is done.
  */
 #ifndef TAKT_SEMIHOSTING_SEMIHOSTING_H
 #define TAKT_SEMIHOSTING_SEMIHOSTING_H

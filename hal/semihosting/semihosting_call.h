@@ -1,5 +1,6 @@
 /*
- * The one instruction that stops the image until QEMU has done what is asked: each processor has its own.
+ * The one instruction that stops the image until QEMU has done what is asked: each processor has
+ * its own.
  */
 #ifndef TAKT_SEMIHOSTING_SEMIHOSTING_CALL_H
 #define TAKT_SEMIHOSTING_SEMIHOSTING_CALL_H

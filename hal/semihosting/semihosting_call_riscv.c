@@ -1,7 +1,9 @@
 /* The instructions by which a RISC-V asks its debugger. */
 #include "semihosting/semihosting_call.h"
 
-/* RISC-V Semihosting, 1.0: these three instructions uncompressed, one behind the other on one page. */
+/*
+ * RISC-V Semihosting, 1.0: these three instructions uncompressed, one behind the other on one page.
+ */
 uintptr_t takt_semihosting_call(uintptr_t operation, const uintptr_t *arguments)
 {
     register uintptr_t number __asm("a0") = operation;

@@ -5,11 +5,13 @@
  *     bus  ->  filters  ->  the controller's FIFO  ->  ring  ->  receive
  *
  * What the hardware alone would not do:
- * - Two frames of one identifier are never in mailboxes at once: those send equal identifiers in the order of the
- *   mailboxes, not of the calls.
- * - A frame that is more urgent than all three in the mailboxes has the least urgent of them taken back and queued
- *   again, so that it waits for one frame on the bus at most (no inversion of priorities).
- * - After bus-off what was to be sent is dropped, being old, and the bus is joined again; until then send refuses.
+ * - Two frames of one identifier are never in mailboxes at once: those send equal identifiers in
+ *   the order of the mailboxes, not of the calls.
+ * - A frame that is more urgent than all three in the mailboxes has the least urgent of them taken
+ *   back and queued again, so that it waits for one frame on the bus at most (no inversion of
+ *   priorities).
+ * - After bus-off what was to be sent is dropped, being old, and the bus is joined again; until
+ *   then send refuses.
  *
  * No call waits for the bus. takt_can_controller_open waits for the controller, with an end.
  */
@@ -56,7 +58,9 @@ struct can_controller {
 };
 
 /*
- * Rates and filters; then joins the bus, which may take until later (CAN_WAITING). False: a rate is not possible, there are more than CAN_NODES_MAX nodes, or the controller does not answer; its state is CAN_ABSENT then.
+ * Rates and filters; then joins the bus, which may take until later (CAN_WAITING). False: a rate is
+ * not possible, there are more than CAN_NODES_MAX nodes, or the controller does not answer; its
+ * state is CAN_ABSENT then.
  */
 bool takt_can_controller_open(struct can_controller *can, const struct can_config *config);
 

@@ -1,6 +1,7 @@
 /*
- * The chip's clock: its full speed out of the crystal, or of the internal oscillator when the crystal does not start. No
- * wait is without end, so the chip always comes up and can say what is wrong.
+ * The chip's clock: its full speed out of the crystal, or of the internal oscillator when the
+ * crystal does not start. No wait is without end, so the chip always comes up and can say what is
+ * wrong.
  */
 #ifndef TAKT_STM32_CLOCK_H
 #define TAKT_STM32_CLOCK_H

@@ -1,6 +1,6 @@
 /*
- * What the chip was doing when it had to stop: a record in RAM that a reset leaves alone and a check that says whether it
- * is one.
+ * What the chip was doing when it had to stop: a record in RAM that a reset leaves alone and a
+ * check that says whether it is one.
  */
 #ifndef TAKT_STM32_CRASH_H
 #define TAKT_STM32_CRASH_H

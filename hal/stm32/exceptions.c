@@ -107,7 +107,10 @@ void exceptions_invariant(const char *file, int line)
     start_anew(&record);
 }
 
-/* Nobody comes back: the whole stack is free again. So a broken invariant needs none where it is deepest. */
+/*
+ * Nobody comes back: the whole stack is free again. So a broken invariant needs none where it is
+ * deepest.
+ */
 __attribute__((naked)) void takt_assert_failed(const char *file UNUSED, int line UNUSED,
                                                const char *text UNUSED)
 {

@@ -1,6 +1,7 @@
 /*
- * What the chip does when it cannot go on: it keeps a record and starts anew. Drives notice by themselves that nobody
- * speaks to them any more (heartbeat), and the next start tells what happened and moves nothing.
+ * What the chip does when it cannot go on: it keeps a record and starts anew. Drives notice by
+ * themselves that nobody speaks to them any more (heartbeat), and the next start tells what
+ * happened and moves nothing.
  */
 #ifndef TAKT_STM32_EXCEPTIONS_H
 #define TAKT_STM32_EXCEPTIONS_H

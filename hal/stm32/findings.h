@@ -27,8 +27,8 @@ struct findings {
 };
 
 /*
- * The problems one by one, the gravest first: *at begins at 0 and belongs to this function. False: there is no other. None
- * at all: the machine may move.
+ * The problems one by one, the gravest first: *at begins at 0 and belongs to this function. False:
+ * there is no other. None at all: the machine may move.
  */
 bool takt_findings_next(const struct findings *found, unsigned *at, struct diagnostic *problem);
 

@@ -1,7 +1,8 @@
 /*
- * Two sectors of the chip's own flash behind hal/flash.h, which the program does not reach (chip/peripherals.h). A part of
- * flash that is erased or programmed cannot be read meanwhile, for 1 to 4 s; where the program lies in it, the processor
- * stands still. So settings are brought while the drives are off.
+ * Two sectors of the chip's own flash behind hal/flash.h, which the program does not reach
+ * (chip/peripherals.h). A part of flash that is erased or programmed cannot be read meanwhile, for
+ * 1 to 4 s; where the program lies in it, the processor stands still. So settings are brought while
+ * the drives are off.
  */
 #ifndef TAKT_STM32_FLASH_H
 #define TAKT_STM32_FLASH_H

@@ -21,8 +21,8 @@ struct log_ring {
 bool takt_log_ring_put(struct log_ring *ring, const char *line);
 
 /*
- * Gives up to most bytes, the oldest first; returns how many. *bytes: where they stand, until the next call. Those behind the
- * end of the ring come with the next call.
+ * Gives up to most bytes, the oldest first; returns how many. *bytes: where they stand, until the
+ * next call. Those behind the end of the ring come with the next call.
  */
 size_t takt_log_ring_take(struct log_ring *ring, const uint8_t **bytes, size_t most);
 

@@ -1,9 +1,9 @@
 /*
- * The firmware on an STM32: the control cycle in the interrupt of a timer, drives on CAN or on step and direction
- * pins, an operator's panel on RS-485, a log, settings in flash.
+ * The firmware on an STM32: the control cycle in the interrupt of a timer, drives on CAN or on step
+ * and direction pins, an operator's panel on RS-485, a log, settings in flash.
  *
- * Nothing moves unless everything is as it must be: image, settings, crystal, CAN controller and bus, and no crash
- * before. What is not is told on log and panel (takt_embedded_refuse).
+ * Nothing moves unless everything is as it must be: image, settings, crystal, CAN controller and
+ * bus, and no crash before. What is not is told on log and panel (takt_embedded_refuse).
  */
 #include "chip/board.h"
 #include "chip/peripherals.h"
@@ -319,7 +319,10 @@ static bool drives_are_off(void *context)
            takt_service_get_state(&board.embedded.service) == PANEL_EMERGENCY;
 }
 
-/* Where a plan would wait for its start: new settings count from the next one on, and no plan lasts until then. */
+/*
+ * Where a plan would wait for its start: new settings count from the next one on, and no plan lasts
+ * until then.
+ */
 static struct correction_tables *borrow_tables(void *context)
 {
     _Static_assert(sizeof(struct correction_tables) <= PLAN_QUEUE_MAX, "there is room for them");

@@ -1,9 +1,10 @@
 /*
- * The torque of a motor as the widths of pulses (TIM1): channel 1 is high for the part of the torque upwards, channel 2 for
- * that downwards; both are low without torque. What stands behind them makes a current of it.
+ * The torque of a motor as the widths of pulses (TIM1): channel 1 is high for the part of the
+ * torque upwards, channel 2 for that downwards; both are low without torque. What stands behind
+ * them makes a current of it.
  *
- * Break: a power stage that fails pulls a pin low, and both channels are low at once, without the processor, until they are
- * armed again.
+ * Break: a power stage that fails pulls a pin low, and both channels are low at once, without the
+ * processor, until they are armed again.
  */
 #ifndef TAKT_STM32_PWM_H
 #define TAKT_STM32_PWM_H
@@ -11,7 +12,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* timer_hz: of the timers on APB2. Returns the counts of a pulse and its pause, which are those of the whole torque. */
+/*
+ * timer_hz: of the timers on APB2. Returns the counts of a pulse and its pause, which are those of
+ * the whole torque.
+ */
 uint32_t takt_pwm_open(uint32_t timer_hz, uint32_t pulses_hz);
 
 /* The channels lead to the pins, or they are low. Armed anew a break is forgotten. */

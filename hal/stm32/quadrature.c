@@ -21,7 +21,10 @@
 #define EGR_UPDATE 1U
 #define SR_EDGE(i) (1U << (3U + (unsigned)(i)))
 
-/* Inputs, of the pins of their own channels; an edge counts when it has stood for 8 clocks of the timer. */
+/*
+ * Inputs, of the pins of their own channels; an edge counts when it has stood for 8 clocks of the
+ * timer.
+ */
 #define FILTER    3U
 #define CCMR_BOTH ((1U | FILTER << 4) | (1U | FILTER << 4) << 8)
 

@@ -1,7 +1,8 @@
 /*
- * The firmware's motion with nothing that moves: a program that is part of the image, step drives that are only counted,
- * and no interrupts. What it says on the log can be compared with `takt run --drive-type step` of the same program: the
- * setpoints' digest must be the same. It needs no crystal, no CAN and no settings, so it also runs in an emulator.
+ * The firmware's motion with nothing that moves: a program that is part of the image, step drives
+ * that are only counted, and no interrupts. What it says on the log can be compared with `takt run
+ * --drive-type step` of the same program: the setpoints' digest must be the same. It needs no
+ * crystal, no CAN and no settings, so it also runs in an emulator.
  *
  *     | G21 G90 ...                   the program, line by line
  *     completed, setpoints 0123456789abcdef, 2345 cycles

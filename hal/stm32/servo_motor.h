@@ -1,6 +1,6 @@
 /*
- * hal/motor.h of a drive's board: torque by the widths of pulses, an encoder at a timer, limit and home switches. A step of the
- * loops is one of the timer of the control cycle.
+ * hal/motor.h of a drive's board: torque by the widths of pulses, an encoder at a timer, limit and
+ * home switches. A step of the loops is one of the timer of the control cycle.
  */
 #ifndef TAKT_STM32_SERVO_MOTOR_H
 #define TAKT_STM32_SERVO_MOTOR_H

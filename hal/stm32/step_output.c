@@ -93,7 +93,10 @@ bool takt_step_output_open(struct step_output *s, enum gpio_port port, uint32_t 
     return set_stream(s, port);
 }
 
-/* In the buffer that is not being sent. They change at the start of a cycle; all of the controller's is behind that. */
+/*
+ * In the buffer that is not being sent. They change at the start of a cycle; all of the
+ * controller's is behind that.
+ */
 static void begin_slots(struct step_output *s)
 {
     const bool second = (takt_chip_read(STREAM_CR) & CR_SECOND) != 0;
@@ -115,7 +118,9 @@ struct step_port takt_step_output_get_port(struct step_output *s)
     return (struct step_port){.pulse = pulse, .context = s};
 }
 
-/* The timer begins with the first cycle and keeps step with the others: all clocks come from one. */
+/*
+ * The timer begins with the first cycle and keeps step with the others: all clocks come from one.
+ */
 void takt_step_output_begin(struct step_output *s)
 {
     if (s->runs)

@@ -1,7 +1,8 @@
 /*
- * Step and direction pins: the slots of a cycle (step_slots.h) go to the port's output register by direct memory access,
- * one at every tick of TIM8, while the next cycle's are being made. Pulses leave one cycle after they were queued. The
- * port has no other outputs: its pins are written together.
+ * Step and direction pins: the slots of a cycle (step_slots.h) go to the port's output register by
+ * direct memory access, one at every tick of TIM8, while the next cycle's are being made. Pulses
+ * leave one cycle after they were queued. The port has no other outputs: its pins are written
+ * together.
  */
 #ifndef TAKT_STM32_STEP_OUTPUT_H
 #define TAKT_STM32_STEP_OUTPUT_H

@@ -15,7 +15,10 @@ bool takt_step_slots_init(struct step_slots *s, uint32_t cycle_us)
            cycle_us * NS_PER_US % STEP_SLOT_NS == 0;
 }
 
-/* The levels of a slot of this cycle, or of one that falls into the next: there as changes of what comes before. */
+/*
+ * The levels of a slot of this cycle, or of one that falls into the next: there as changes of what
+ * comes before.
+ */
 static void raise_pin(struct step_slots *s, unsigned slot, unsigned pin)
 {
     uint16_t *word = slot < s->slots ? &s->word[slot] : &s->overhang[slot - s->slots];

@@ -5,7 +5,8 @@
  *     takt_usart_poll      begins to send it once the line has been silent for the gap
  *     takt_usart_interrupt byte by byte; after the last bit the transceiver listens again
  *
- * While it sends it does not listen: a transceiver whose receiver is always on would let it hear itself.
+ * While it sends it does not listen: a transceiver whose receiver is always on would let it hear
+ * itself.
  */
 #ifndef TAKT_STM32_USART_H
 #define TAKT_STM32_USART_H
@@ -55,7 +56,8 @@ struct usart {
 bool takt_usart_open(struct usart *u, const struct usart_config *config);
 
 /*
- * byte: not touched until takt_usart_is_idle. False: something is being sent, or it is too long; nothing is sent of it.
+ * byte: not touched until takt_usart_is_idle. False: something is being sent, or it is too long;
+ * nothing is sent of it.
  */
 bool takt_usart_send(struct usart *u, const uint8_t *byte, size_t length);
 

@@ -18,7 +18,9 @@
 #define PRESCALER_64 4U
 #define MS_PER_COUNT 2U
 
-/* Taking over lasts up to 5 of the watchdog's own clocks, 0.3 ms: some tens of thousands of reads. */
+/*
+ * Taking over lasts up to 5 of the watchdog's own clocks, 0.3 ms: some tens of thousands of reads.
+ */
 #define BUSY_READS 200000U
 
 bool takt_watchdog_start(uint32_t ms)

@@ -1,6 +1,6 @@
 /*
- * The independent watchdog: its own oscillator of some 32 kHz (17 to 47), so times are nominal. Once started only a reset
- * stops it.
+ * The independent watchdog: its own oscillator of some 32 kHz (17 to 47), so times are nominal.
+ * Once started only a reset stops it.
  */
 #ifndef TAKT_STM32_WATCHDOG_H
 #define TAKT_STM32_WATCHDOG_H
@@ -10,7 +10,10 @@
 
 #define WATCHDOG_MS_MAX 8192U
 
-/* Starts it, or gives it another time. ms: 1 ... WATCHDOG_MS_MAX. False: it does not take the time; it runs all the same. */
+/*
+ * Starts it, or gives it another time. ms: 1 ... WATCHDOG_MS_MAX. False: it does not take the time;
+ * it runs all the same.
+ */
 bool takt_watchdog_start(uint32_t ms);
 
 /* It must be heard within the time, else the chip is reset. */

@@ -1,7 +1,8 @@
 /*
  * The image of a drive on an STM32: one axis, a node on CAN (drive_node.h).
  *
- * Nothing turns unless everything is as it must be: image, crystal, CAN controller, and no crash before.
+ * Nothing turns unless everything is as it must be: image, crystal, CAN controller, and no crash
+ * before.
  */
 #include "base/maths.h"
 #include "chip/board.h"

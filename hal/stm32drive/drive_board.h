@@ -1,6 +1,6 @@
 /*
- * The board of a drive: pins, and the axis that it moves. A drive's machine is what is built in here; what its objects say is
- * stored by 1010. hal/stm32f405/README.md has the same as tables.
+ * The board of a drive: pins, and the axis that it moves. A drive's machine is what is built in
+ * here; what its objects say is stored by 1010. hal/stm32f405/README.md has the same as tables.
  */
 #ifndef TAKT_STM32DRIVE_DRIVE_BOARD_H
 #define TAKT_STM32DRIVE_DRIVE_BOARD_H
@@ -29,8 +29,8 @@ static const struct gpio_pin drive_track_a = {GPIO_B, 4}, drive_track_b = {GPIO_
 static const struct gpio_pin drive_limit_low = {GPIO_C, 0}, drive_limit_high = {GPIO_C, 1};
 
 /*
- * A motor of 400 W with 2500 lines on a screw of 10 mm: the axis of host/drives/README.md with the encoder of a timer. The loops
- * turn at 4 kHz, as that page's do.
+ * A motor of 400 W with 2500 lines on a screw of 10 mm: the axis of host/drives/README.md with the
+ * encoder of a timer. The loops turn at 4 kHz, as that page's do.
  */
 static const struct servo_config drive_config = {
     .node = DRIVE_NODE,

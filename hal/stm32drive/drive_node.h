@@ -1,6 +1,7 @@
 /*
- * The firmware of a drive (firmware/servo) on a board: its motor at timers, its bus, and what it stores in flash. Each cycle it
- * takes what has come over the bus, makes a step of the loops, and waits in it for the timer of the control cycle.
+ * The firmware of a drive (firmware/servo) on a board: its motor at timers, its bus, and what it
+ * stores in flash. Each cycle it takes what has come over the bus, makes a step of the loops, and
+ * waits in it for the timer of the control cycle.
  */
 #ifndef TAKT_STM32DRIVE_DRIVE_NODE_H
 #define TAKT_STM32DRIVE_DRIVE_NODE_H
@@ -32,7 +33,9 @@ struct drive_node {
     uint8_t stored[SERVO_STORED_MAX];
 };
 
-/* Switches the drive on, and boots it. False: there is no bus. node must not be moved afterwards. */
+/*
+ * Switches the drive on, and boots it. False: there is no bus. node must not be moved afterwards.
+ */
 bool takt_drive_node_open(struct drive_node *node, const struct drive_node_config *config);
 
 /* The timer of the control cycle runs. */

@@ -6,7 +6,10 @@
 
 #include <string.h>
 
-/* Reads of a register; at 168 MHz some 2 ms. The controller answers within a few bits, the bus when it is idle. */
+/*
+ * Reads of a register; at 168 MHz some 2 ms. The controller answers within a few bits, the bus when
+ * it is idle.
+ */
 #define ANSWER_READS 50000U
 
 #define QUANTA_MIN 8U
@@ -42,7 +45,10 @@ static uint32_t timing_of(uint32_t divider, uint32_t quanta, uint32_t behind)
            BXCAN_BTR_SJW(behind < SJW_MAX ? behind : SJW_MAX);
 }
 
-/* The bit timing register for a rate: sampled as near to 7/8 of a bit as can be. 0: no division of the clock gives it. */
+/*
+ * The bit timing register for a rate: sampled as near to 7/8 of a bit as can be. 0: no division of
+ * the clock gives it.
+ */
 static uint32_t timing_for(uint32_t clock_hz, uint32_t bitrate)
 {
     uint32_t best = 0, best_error = UINT32_MAX;

@@ -14,8 +14,8 @@
 #define PLL_HZ      (168U * MHZ)
 
 /*
- * Waits, in reads of a register, of which the chip does at most some 3 million a second at 16 MHz: a crystal starts in
- * 2 ms and is given 100; the others take microseconds.
+ * Waits, in reads of a register, of which the chip does at most some 3 million a second at 16 MHz:
+ * a crystal starts in 2 ms and is given 100; the others take microseconds.
  */
 #define CRYSTAL_READS 300000U
 #define PLL_READS     30000U
@@ -48,7 +48,10 @@ static bool start_pll(uint32_t source_mhz, uint32_t source)
     return false;
 }
 
-/* What must be so before the core runs at 168 MHz: regulator, wait states, buses within their limits. */
+/*
+ * What must be so before the core runs at 168 MHz: regulator, wait states, buses within their
+ * limits.
+ */
 static bool prepare_speed(void)
 {
     chip_change(RCC_APB1ENR, 0, RCC_APB1ENR_PWR);
@@ -82,7 +85,10 @@ static enum clock_source start_source(uint32_t crystal_hz)
 {
     if (crystal_fits(crystal_hz) && start_crystal() &&
         start_pll(crystal_hz / MHZ, RCC_PLLCFGR_HSE) && switch_to_pll()) {
-        /* A crystal that stops later: the chip goes back to its own oscillator and raises an interrupt. */
+        /*
+         * A crystal that stops later: the chip goes back to its own oscillator and raises an
+         * interrupt.
+         */
         chip_change(RCC_CR, 0, RCC_CR_CSSON);
         return CLOCK_CRYSTAL;
     }

@@ -1,4 +1,7 @@
-/* The flash controller (RM0090, chapter 3): the processor stands still 16 us for a word of 32 bits, up to 2 s for a sector. */
+/*
+ * The flash controller (RM0090, chapter 3): the processor stands still 16 us for a word of 32 bits,
+ * up to 2 s for a sector.
+ */
 #include "stm32/flash.h"
 
 #include "stm32/chip.h"
@@ -26,8 +29,8 @@
 #define CR_LOCK      (1U << 31)
 
 /*
- * Reads of the status: code in flash stands still meanwhile and needs few; code in RAM would read some 25 million times a
- * second.
+ * Reads of the status: code in flash stands still meanwhile and needs few; code in RAM would read
+ * some 25 million times a second.
  */
 #define ERASE_READS   100000000U
 #define PROGRAM_READS 10000U

@@ -1,5 +1,6 @@
 /*
- * Registers of the reset and clock control, the power controller and the flash interface's wait states.
+ * Registers of the reset and clock control, the power controller and the flash interface's wait
+ * states.
  */
 #ifndef TAKT_STM32F405_RCC_H
 #define TAKT_STM32F405_RCC_H

@@ -1,5 +1,6 @@
 /*
- * The board: which pin is what, and who may interrupt whom. README.md has the same as tables, with the wiring.
+ * The board: which pin is what, and who may interrupt whom. README.md has the same as tables, with
+ * the wiring.
  */
 #ifndef TAKT_STM32H743_BOARD_H
 #define TAKT_STM32H743_BOARD_H
@@ -20,8 +21,9 @@
 #define BOARD_LOG_BAUDS   115200U
 
 /*
- * The silence that ends a frame on the panel's line, and the clock of TIM2 and TIM5. An emulator leaves gaps on its serial
- * lines as it likes, and its timers have a clock of their own: it gets an image with others.
+ * The silence that ends a frame on the panel's line, and the clock of TIM2 and TIM5. An emulator
+ * leaves gaps on its serial lines as it likes, and its timers have a clock of their own: it gets an
+ * image with others.
  */
 #ifndef BOARD_TIMER_HZ
 #define BOARD_TIMER_HZ 0U /* that of the bus they are on */

@@ -1,6 +1,6 @@
 /*
- * The core's caches (ARMv7-M Architecture Reference Manual, B2.2 and B3.2): both are on from the start. 16 KiB of data in 4
- * ways of lines of 32 bytes.
+ * The core's caches (ARMv7-M Architecture Reference Manual, B2.2 and B3.2): both are on from the
+ * start. 16 KiB of data in 4 ways of lines of 32 bytes.
  */
 #include "port/cortex_m.h"
 #include "port/startup.h"

@@ -1,4 +1,7 @@
-/* The clock of stm32/clock.h: 400 MHz, buses 200 MHz, peripherals 100 MHz, FDCAN 80 MHz (RM0433, chapter 8). */
+/*
+ * The clock of stm32/clock.h: 400 MHz, buses 200 MHz, peripherals 100 MHz, FDCAN 80 MHz (RM0433,
+ * chapter 8).
+ */
 #include "stm32/clock.h"
 
 #include "stm32/chip.h"
@@ -15,14 +18,17 @@
 #define CAN_HZ      (80U * MHZ)
 
 /*
- * Waits, in reads of a register, of which the chip does at most some 10 million a second at 64 MHz: a crystal starts in
- * 2 ms and is given 100; the others take microseconds.
+ * Waits, in reads of a register, of which the chip does at most some 10 million a second at 64 MHz:
+ * a crystal starts in 2 ms and is given 100; the others take microseconds.
  */
 #define CRYSTAL_READS 1000000U
 #define PLL_READS     100000U
 #define SHORT_READS   30000U
 
-/* Two wait states and the longest delay of programming: up to 210 MHz in this mode of the regulator (RM0433, table 17). */
+/*
+ * Two wait states and the longest delay of programming: up to 210 MHz in this mode of the regulator
+ * (RM0433, table 17).
+ */
 #define FLASH_ACR_200_MHZ (2U | 2U << 4)
 
 static bool start_crystal(void)
@@ -34,7 +40,10 @@ static bool start_crystal(void)
     return false;
 }
 
-/* The PLL's input: 2 MHz of an even source, 5 of one that 5 divides; both divide 800. 0: there is none. */
+/*
+ * The PLL's input: 2 MHz of an even source, 5 of one that 5 divides; both divide 800. 0: there is
+ * none.
+ */
 static uint32_t input_mhz(uint32_t source_mhz)
 {
     if (source_mhz % 2U == 0)
@@ -62,7 +71,10 @@ static bool start_pll(uint32_t source_mhz, uint32_t source)
     return false;
 }
 
-/* Supplied by the chip's own regulator, which has to be said once after power-on, before its mode may change. */
+/*
+ * Supplied by the chip's own regulator, which has to be said once after power-on, before its mode
+ * may change.
+ */
 static bool prepare_power(void)
 {
     if ((takt_chip_read(PWR_CR3) & PWR_CR3_OPEN) != 0)
@@ -73,7 +85,10 @@ static bool prepare_power(void)
     return chip_wait(PWR_D3CR, PWR_D3CR_READY, PWR_D3CR_READY, SHORT_READS);
 }
 
-/* What must be so before the core runs at 400 MHz: regulator, wait states, buses within their limits. */
+/*
+ * What must be so before the core runs at 400 MHz: regulator, wait states, buses within their
+ * limits.
+ */
 static bool prepare_speed(void)
 {
     if (!prepare_power())
@@ -110,7 +125,10 @@ static enum clock_source start_source(uint32_t crystal_hz)
 {
     if (crystal_fits(crystal_hz) && start_crystal() &&
         start_pll(crystal_hz / MHZ, RCC_PLLCKSELR_HSE) && switch_to_pll()) {
-        /* A crystal that stops later: the chip goes back to its own oscillator and raises an interrupt. */
+        /*
+         * A crystal that stops later: the chip goes back to its own oscillator and raises an
+         * interrupt.
+         */
         chip_change(RCC_CR, 0, RCC_CR_CSSON);
         return CLOCK_CRYSTAL;
     }

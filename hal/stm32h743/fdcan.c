@@ -1,4 +1,7 @@
-/* FDCAN (RM0433, chapter 56) behind stm32/can_hardware.h: classical CAN, and CAN FD whose data go at a rate of their own. */
+/*
+ * FDCAN (RM0433, chapter 56) behind stm32/can_hardware.h: classical CAN, and CAN FD whose data go
+ * at a rate of their own.
+ */
 #include "stm32/can_hardware.h"
 #include "stm32/chip.h"
 #include "stm32h743/fdcan_registers.h"
@@ -6,7 +9,10 @@
 
 #include <string.h>
 
-/* Reads of a register, some 2 ms. The controller answers within a few bits, the bus when it is idle. */
+/*
+ * Reads of a register, some 2 ms. The controller answers within a few bits, the bus when it is
+ * idle.
+ */
 #define ANSWER_READS 25000U
 
 /* The message memory, in words: filters, first FIFO, mailboxes. */
@@ -48,13 +54,16 @@ static const struct limits nominal_limits = {256, 128, 512}, data_limits = {32, 
 
 #define QUANTA_MIN 8U
 
-/* A transceiver's delay is measured, and compensated, only for quanta of up to two clocks (ISO 11898-1, 11.3.3). */
+/*
+ * A transceiver's delay is measured, and compensated, only for quanta of up to two clocks (ISO
+ * 11898-1, 11.3.3).
+ */
 #define DELAY_DIVIDER_MAX 2U
 #define DELAY_OFFSET_MAX  127U
 
 /*
- * Thousandths of a bit before the sample. All nodes must sample CAN FD at the same point, since the rate changes there:
- * where SocketCAN has it. Classical CAN as CiA 301 asks for it.
+ * Thousandths of a bit before the sample. All nodes must sample CAN FD at the same point, since the
+ * rate changes there: where SocketCAN has it. Classical CAN as CiA 301 asks for it.
  */
 static uint32_t sample_of(uint32_t rate, bool is_fd)
 {
@@ -77,7 +86,10 @@ static bool divide(uint32_t clock_hz, uint32_t rate, uint32_t divider, bool is_f
     return quanta >= QUANTA_MIN && bit->before <= limits->before && bit->behind <= limits->behind;
 }
 
-/* The same quanta for both rates, as short as can be (CiA 601-3). 0: no division of the clock gives them. */
+/*
+ * The same quanta for both rates, as short as can be (CiA 601-3). 0: no division of the clock gives
+ * them.
+ */
 static uint32_t divider_for(uint32_t clock_hz, const struct can_rates *rates, struct bit *nominal,
                             struct bit *data)
 {
@@ -101,7 +113,10 @@ uint32_t takt_can_hardware_find_impossible(uint32_t clock_hz, const struct can_r
     return divider_for(clock_hz, &classical, &nominal, &data) != 0 ? rates->data : rates->nominal;
 }
 
-/* The second sample of what the node itself sends: as far behind the measured delay as the first is in a bit. */
+/*
+ * The second sample of what the node itself sends: as far behind the measured delay as the first is
+ * in a bit.
+ */
 static void set_data_bit(uint32_t divider, const struct bit *bit)
 {
     const uint32_t offset = divider * (1U + bit->before);
@@ -206,7 +221,10 @@ bool takt_can_hardware_is_off(void)
     return (read(FDCAN_PSR) & FDCAN_PSR_BUS_OFF) != 0;
 }
 
-/* At bus-off the controller goes to its start-up mode by itself; allowing changes there empties the mailboxes. */
+/*
+ * At bus-off the controller goes to its start-up mode by itself; allowing changes there empties the
+ * mailboxes.
+ */
 void takt_can_hardware_leave(void)
 {
     chip_change(FDCAN_1 + FDCAN_CCCR, 0, FDCAN_CCCR_INIT);

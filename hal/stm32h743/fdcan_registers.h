@@ -1,5 +1,6 @@
 /*
- * Registers of FDCAN, offsets from its base, and its elements in the message memory (RM0433, 56.4 and 56.5).
+ * Registers of FDCAN, offsets from its base, and its elements in the message memory (RM0433, 56.4
+ * and 56.5).
  */
 #ifndef TAKT_STM32H743_FDCAN_REGISTERS_H
 #define TAKT_STM32H743_FDCAN_REGISTERS_H

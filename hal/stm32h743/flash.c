@@ -1,4 +1,7 @@
-/* The flash controller of the second bank (RM0433, 4.9): 256 bits at a time, which have a code that corrects one bit. */
+/*
+ * The flash controller of the second bank (RM0433, 4.9): 256 bits at a time, which have a code that
+ * corrects one bit.
+ */
 #include "stm32/flash.h"
 
 #include "stm32/chip.h"
@@ -89,7 +92,10 @@ static uint32_t word_at(const uint8_t *bytes)
            (uint32_t)bytes[3] << 24;
 }
 
-/* It begins by itself when its last part has been written. A word that is not blank would get a code that fits nothing. */
+/*
+ * It begins by itself when its last part has been written. A word that is not blank would get a
+ * code that fits nothing.
+ */
 static bool program_word(struct flash *flash, uint32_t address, const uint8_t *bytes)
 {
     for (uint32_t i = 0; i < FLASH_WORD_BYTES; i += 4) {
@@ -134,8 +140,8 @@ static bool is_readable(unsigned sector)
 }
 
 /*
- * Where power has failed while a word was being programmed, its code fits nothing and reading it is a bus fault. Such a
- * sector holds no set that counts: it is erased before anybody looks.
+ * Where power has failed while a word was being programmed, its code fits nothing and reading it is
+ * a bus fault. Such a sector holds no set that counts: it is erased before anybody looks.
  */
 struct flash_port takt_flash_get_port(struct flash *flash, const uint8_t *mapped)
 {

@@ -1,5 +1,6 @@
 /*
- * Registers of the reset and clock control, the power controller and the flash interface's wait states (RM0433, 8.7, 6.8, 4.9).
+ * Registers of the reset and clock control, the power controller and the flash interface's wait
+ * states (RM0433, 8.7, 6.8, 4.9).
  */
 #ifndef TAKT_STM32H743_RCC_H
 #define TAKT_STM32H743_RCC_H
@@ -34,7 +35,9 @@
 #define RCC_CFGR_SWS_MASK (7U << 3)
 #define RCC_CFGR_SWS_PLL  (3U << 3)
 
-/* Dividers by two: of the buses' clock out of the core's, and of all peripheral buses out of that. */
+/*
+ * Dividers by two: of the buses' clock out of the core's, and of all peripheral buses out of that.
+ */
 #define RCC_D1CFGR_HPRE_2   (8U << 0)
 #define RCC_D1CFGR_D1PPRE_2 (4U << 4)
 #define RCC_D1CFGR_MASK     0xF7FU

@@ -1,6 +1,6 @@
 /*
- * A broken invariant in an image whose port has nothing else to do about it: the processor's trap, which ends in the port's
- * handler of faults.
+ * A broken invariant in an image whose port has nothing else to do about it: the processor's trap,
+ * which ends in the port's handler of faults.
  */
 #include "base/assert.h"
 

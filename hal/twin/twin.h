@@ -32,7 +32,9 @@ struct twin_hello {
     uint32_t sense_size;  /* struct motor_sense */
 };
 
-/* takt answers with this, and with struct servo_config up to its dictionary, which is the own one. */
+/*
+ * takt answers with this, and with struct servo_config up to its dictionary, which is the own one.
+ */
 #define TWIN_CONFIG_SIZE offsetof(struct servo_config, dictionary)
 
 struct twin_setup {

@@ -9,11 +9,17 @@
 
 #include <string.h>
 
-/* Exact path: the axes stop where the direction changes by more than this, and stay within so much of an increment. */
+/*
+ * Exact path: the axes stop where the direction changes by more than this, and stay within so much
+ * of an increment.
+ */
 #define EXACT_CHANGE 1e-6
 #define EXACT_PART   0.5
 
-/* A section of which less than this part of its time, or so many knots, could be won is not optimised. */
+/*
+ * A section of which less than this part of its time, or so many knots, could be won is not
+ * optimised.
+ */
 #define WORTH_PART  0.001
 #define WORTH_KNOTS 2
 
@@ -111,7 +117,10 @@ static double least_jerk_mm(const struct plan_limits *of)
     return least * of->cycle_s * of->cycle_s * of->cycle_s;
 }
 
-/* At the ends of sections setpoints go from whole quanta to where blocks end: no axis may see that as jerk. */
+/*
+ * At the ends of sections setpoints go from whole quanta to where blocks end: no axis may see that
+ * as jerk.
+ */
 static uint32_t fine_cycles(const struct plan_limits *of, uint32_t cycles)
 {
     while (cycles > 1 &&
@@ -141,8 +150,9 @@ static uint32_t step_cycles(const struct compile_config *config)
 }
 
 /*
- * Rounding of control points to quanta changes third differences by four of them at most. The reserve but for what is kept
- * for the rate is for that; what it takes more is left out of the jerk, of which half remains.
+ * Rounding of control points to quanta changes third differences by four of them at most. The
+ * reserve but for what is kept for the rate is for that; what it takes more is left out of the
+ * jerk, of which half remains.
  */
 static double usable_jerk(const struct compile *c, double jerk_mm_s3)
 {
@@ -267,8 +277,8 @@ static void narrow(struct ahead_path *path)
 }
 
 /*
- * Optimised, or where that finds nothing better the exact path, which is lent and given back. Where a tolerance is too wide
- * for its path, so that nothing legal is found, half of it may do.
+ * Optimised, or where that finds nothing better the exact path, which is lent and given back. Where
+ * a tolerance is too wide for its path, so that nothing legal is found, half of it may do.
  */
 static enum compile_result optimise(struct compile *c, struct trail *exact)
 {
@@ -371,7 +381,10 @@ static bool is_exact(const struct move *move)
     return move->path != PATH_BLEND || !(move->tolerance_mm > 0);
 }
 
-/* Is the junction between the last element collected and a curve passed without a change of direction? */
+/*
+ * Is the junction between the last element collected and a curve passed without a change of
+ * direction?
+ */
 static bool is_tangent(const struct compile *c, const struct curve *next)
 {
     const struct curve *last = &c->path.element[c->path.count - 1].curve;
@@ -397,7 +410,10 @@ static bool begins_section(const struct compile *c, const struct ahead_element *
     return last->stop || ((e->exact || last->exact) && !is_tangent(c, &e->curve));
 }
 
-/* Where the tolerance changes, both neighbours keep the smaller one: what is near to both is in either's. */
+/*
+ * Where the tolerance changes, both neighbours keep the smaller one: what is near to both is in
+ * either's.
+ */
 static void share_tolerance(struct compile *c, struct ahead_element *e)
 {
     const double own_mm = e->tolerance_mm;

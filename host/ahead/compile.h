@@ -1,6 +1,6 @@
 /*
- * A program's canonical moves in, a compiled program out: sections from rest to rest are collected, planned and written
- * one after the other.
+ * A program's canonical moves in, a compiled program out: sections from rest to rest are collected,
+ * planned and written one after the other.
  */
 #ifndef TAKT_HOST_AHEAD_COMPILE_H
 #define TAKT_HOST_AHEAD_COMPILE_H
@@ -14,19 +14,26 @@
 #include <stdint.h>
 
 /*
- * Time between knots of the curve, at most, and so three axes' 3 kB a second; a slower control cycle has one knot each. Less
- * where the time in which the tolerance is crossed, T = max(cbrt(P / J), sqrt(P / A)), is less than so many knots, and one
- * cycle where nothing is blended, for every section takes two knots longer than its exact path.
+ * Time between knots of the curve, at most, and so three axes' 3 kB a second; a slower control
+ * cycle has one knot each. Less where the time in which the tolerance is crossed, T = max(cbrt(P /
+ * J), sqrt(P / A)), is less than so many knots, and one cycle where nothing is blended, for every
+ * section takes two knots longer than its exact path.
  */
 #define COMPILE_STEP_S         0.002
 #define COMPILE_CROSSING_KNOTS 2
 
-/* Part of acceleration and jerk left to changes of the rate (firmware/replay/rate.h), and of velocity to rounding. */
+/*
+ * Part of acceleration and jerk left to changes of the rate (firmware/replay/rate.h), and of
+ * velocity to rounding.
+ */
 #define COMPILE_RESERVE      0.005
 #define COMPILE_RESERVE_KEPT 0.004
 #define COMPILE_SPEED_PART   0.9995
 
-/* A quantum is no more than this part of the least J tau^3, if there are so few cycles between knots. */
+/*
+ * A quantum is no more than this part of the least J tau^3, if there are so few cycles between
+ * knots.
+ */
 #define COMPILE_QUANTUM_PART 0.01
 
 enum compile_result {
@@ -74,7 +81,10 @@ struct compile {
     } wrong;
 };
 
-/* COMPILE_DONE or COMPILE_MEMORY. stream: as encoder_begin has it. compile_free is due in either case. */
+/*
+ * COMPILE_DONE or COMPILE_MEMORY. stream: as encoder_begin has it. compile_free is due in either
+ * case.
+ */
 enum compile_result compile_begin(struct compile *c, const struct compile_config *config,
                                   const struct point *start, FILE *stream);
 enum compile_result compile_add(struct compile *c, const struct move *move);

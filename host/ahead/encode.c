@@ -126,7 +126,10 @@ static size_t ends_in(const struct endings *ends, size_t from, size_t interval)
     return count;
 }
 
-/* The part of its interval that an end is in, from 0; an end of an interval before counts as its begin. */
+/*
+ * The part of its interval that an end is in, from 0; an end of an interval before counts as its
+ * begin.
+ */
 static unsigned part_of(uint64_t end, size_t interval, unsigned bits)
 {
     const uint64_t from = (uint64_t)interval * REPLAY_END_PARTS;
@@ -222,7 +225,9 @@ static size_t fitting(const struct endings *ends, size_t first, size_t intervals
     return count;
 }
 
-/* Everything of a section from interval first on that fits into one record; returns the intervals. */
+/*
+ * Everything of a section from interval first on that fits into one record; returns the intervals.
+ */
 static size_t write_knots(struct encoder *e, const struct trail *t, size_t first,
                           struct endings *ends)
 {

@@ -26,7 +26,10 @@ void encoder_add(struct encoder *e, const struct ahead_path *path, const struct 
 /* Counts and digest are known now. False: not everything could be written. */
 bool encoder_end(struct encoder *e, uint64_t program);
 
-/* Bits below 1 mm of the quantum: third differences of control points up to so much fit into 16 bits. */
+/*
+ * Bits below 1 mm of the quantum: third differences of control points up to so much fit into 16
+ * bits.
+ */
 uint32_t encoder_quantum_bits(double third_mm);
 
 #endif

@@ -76,7 +76,10 @@ static bool grow(struct exact *x)
     return true;
 }
 
-/* The next control point, which has knot k - 1; its place stands at half knot 2 (k - 1), the middle's before it. */
+/*
+ * The next control point, which has knot k - 1; its place stands at half knot 2 (k - 1), the
+ * middle's before it.
+ */
 static bool append(struct exact *x, const double point[3], double place_mm)
 {
     const size_t k = x->trail->intervals;

@@ -13,8 +13,9 @@
 #define EXCESS_REACH_MM 0.3
 
 /*
- * p: the problem built for the window. Sets the trail's beyond of every interval of the window: the largest of velocity,
- * acceleration, jerk and feed over its limit and of the distance over its tolerance; <= 1: legal. Returns the largest.
+ * p: the problem built for the window. Sets the trail's beyond of every interval of the window: the
+ * largest of velocity, acceleration, jerk and feed over its limit and of the distance over its
+ * tolerance; <= 1: legal. Returns the largest.
  */
 double excess_measure(const struct window *w, const struct problem *p);
 

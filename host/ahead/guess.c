@@ -95,8 +95,9 @@ static double feed_at(const struct guess *g, const struct ahead_element *e, cons
 }
 
 /*
- * A corner with the change of direction d, m its largest component, is passed within P = |d| v T / 12 by a triangle of
- * acceleration, T = 2 sqrt(v m / J), and within P = |d| v T / 8 by an even one, T = v m / A: the slower of
+ * A corner with the change of direction d, m its largest component, is passed within P = |d| v T /
+ * 12 by a triangle of acceleration, T = 2 sqrt(v m / J), and within P = |d| v T / 8 by an even one,
+ * T = v m / A: the slower of
  *
  *     v = (6 P sqrt(J / m) / |d|)^(2/3),    v = sqrt(8 P A / (m |d|))
  *
@@ -158,8 +159,9 @@ static void set_nodes(struct guess *g)
 }
 
 /*
- * The feed squared at the end of a piece, from that at its begin: v^2 + 2 a ds by an even acceleration; and by that of a
- * ramp from rest whose jerk is even, a = sqrt(J v) / 2, so that d(v^(3/2)) = 3/4 sqrt(J) ds.
+ * The feed squared at the end of a piece, from that at its begin: v^2 + 2 a ds by an even
+ * acceleration; and by that of a ramp from rest whose jerk is even, a = sqrt(J v) / 2, so that
+ * d(v^(3/2)) = 3/4 sqrt(J) ds.
  */
 static double ramp(const struct guess *g, size_t k, double square)
 {

@@ -1,6 +1,6 @@
 /*
- * A first trajectory along a section: feeds that axes, curvature and corners allow by simple formulas, reached by an even
- * acceleration. It is on the path but not legal.
+ * A first trajectory along a section: feeds that axes, curvature and corners allow by simple
+ * formulas, reached by an even acceleration. It is on the path but not legal.
  */
 #ifndef TAKT_HOST_AHEAD_GUESS_H
 #define TAKT_HOST_AHEAD_GUESS_H

@@ -1,10 +1,16 @@
-/* What the optimiser keeps: the limits of the linear axes, the times between knots and between setpoints, and the modes. */
+/*
+ * What the optimiser keeps: the limits of the linear axes, the times between knots and between
+ * setpoints, and the modes.
+ */
 #ifndef TAKT_HOST_AHEAD_LIMITS_H
 #define TAKT_HOST_AHEAD_LIMITS_H
 
 #include "ahead/modes.h"
 
-/* Where the modes are others than told, as far as they may be, the tool may be so many tolerances off the path. */
+/*
+ * Where the modes are others than told, as far as they may be, the tool may be so many tolerances
+ * off the path.
+ */
 #define STRAY_TOLERANCES 3
 
 struct ahead_limits {

@@ -4,7 +4,10 @@
 
 #include <string.h>
 
-/* A drive's velocity changes once a cycle: by that an oscillator of frequency w lags (w cycle)^2 / 12 (host/vibration). */
+/*
+ * A drive's velocity changes once a cycle: by that an oscillator of frequency w lags (w cycle)^2 /
+ * 12 (host/vibration).
+ */
 static double lag_of(const struct vibration_config *config, double cycle_s)
 {
     const double angle = cycle_s / modes_step_s(config);
@@ -122,7 +125,10 @@ static struct modes_point differ(const struct modes_point p[3], double own, doub
     return to;
 }
 
-/* A stage on all of a window, which becomes shorter by a point on each side; gone: points lost there before. */
+/*
+ * A stage on all of a window, which becomes shorter by a point on each side; gone: points lost
+ * there before.
+ */
 static void apply(struct modes_point *window, size_t points, size_t gone, double own, double slope,
                   double bend)
 {

@@ -1,5 +1,6 @@
 /*
- * The programmed path of one section, from rest to rest: elements in order, told by the length along them.
+ * The programmed path of one section, from rest to rest: elements in order, told by the length
+ * along them.
  */
 #ifndef TAKT_HOST_AHEAD_PATH_H
 #define TAKT_HOST_AHEAD_PATH_H
@@ -13,7 +14,8 @@
 
 /* How the path goes on from one element to the next. */
 enum ahead_junction {
-    AHEAD_SMOOTH, /* the curve is close to the junction if it is close to the path at every half knot */
+    /* the curve is close to the junction if it is close to the path at every half knot */
+    AHEAD_SMOOTH,
     AHEAD_CURVED, /* it has to be led close to the junction, sideways */
     AHEAD_SHARP   /* and along the path as well */
 };
@@ -76,8 +78,9 @@ void ahead_path_at(const struct ahead_path *path, size_t element, double place_m
                    double point[AXIS_LINEAR_COUNT], double tangent[AXIS_LINEAR_COUNT]);
 
 /*
- * The nearest place within reach_mm of place_mm, where farther ones along the path count as a little farther away, so that
- * a path that turns back on itself is not mixed up. hint: an element near by.
+ * The nearest place within reach_mm of place_mm, where farther ones along the path count as a
+ * little farther away, so that a path that turns back on itself is not mixed up. hint: an element
+ * near by.
  */
 void ahead_path_closest(const struct ahead_path *path, const double x[AXIS_LINEAR_COUNT],
                         double place_mm, double reach_mm, size_t hint,

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Intervals of a window, and the longest: what is left at the end of a trajectory joins the last one. */
+/* Intervals of a window, and the longest: what is left at a trajectory's end joins the last. */
 #define WINDOW     2000
 #define WINDOW_MAX (WINDOW + WINDOW / 2)
 
@@ -21,8 +21,8 @@
 #define REPAIRS_MAX  12
 
 /*
- * The rounds end when so many in a row, with windows cut both ways, each change less than this part of the time; the first ones
- * bring the guess within the limits and say nothing.
+ * The rounds end when so many in a row, with windows cut both ways, each change less than this part
+ * of the time; the first ones bring the guess within the limits and say nothing.
  */
 #define FIRST_ROUNDS 2
 #define STILL_ROUNDS 2
@@ -31,7 +31,10 @@
 /* A trajectory that has grown beyond so many times what is of use in a round is not waited for. */
 #define ROUND_GROWTH 2
 
-/* Intervals before and behind those to be repaired that are worked on; of a slow-down before and behind its middle. */
+/*
+ * Intervals before and behind those to be repaired that are worked on; of a slow-down before and
+ * behind its middle.
+ */
 #define MARGIN      120
 #define SLOW_MARGIN 24
 
@@ -161,8 +164,8 @@ static double measure(struct bench *b, const struct window *w)
 }
 
 /*
- * By how much an interval is passed more slowly: enough for its velocity, e = -2 (beyond - 1), and twice as much in every
- * repair.
+ * By how much an interval is passed more slowly: enough for its velocity, e = -2 (beyond - 1), and
+ * twice as much in every repair.
  */
 static double slowness(const struct solver *s, double beyond)
 {
@@ -355,7 +358,7 @@ static double measure_all(struct solver *s)
     return worst;
 }
 
-/* The end of the stretch to be repaired that begins at or behind first; its begin; the trajectory's end: none. */
+/* The next stretch to be repaired, at or behind first: its end and begin. All: none. */
 static size_t next_repair(const struct solver *s, size_t first, size_t *end)
 {
     const size_t all = s->trail->intervals;

@@ -1,10 +1,10 @@
 /*
- * The optimiser on one section, from rest to rest: rounds of steps on windows of the trajectory, then repair of what is not
- * legal yet.
+ * The optimiser on one section, from rest to rest: rounds of steps on windows of the trajectory,
+ * then repair of what is not legal yet.
  *
- * A round cuts the trajectory into windows whose first and last three control points stay, so that they join without a
- * stop and may be worked on at the same time; the next round cuts it elsewhere. The result does not depend on the number
- * of cores.
+ * A round cuts the trajectory into windows whose first and last three control points stay, so that
+ * they join without a stop and may be worked on at the same time; the next round cuts it elsewhere.
+ * The result does not depend on the number of cores.
  */
 #ifndef TAKT_HOST_AHEAD_SOLVER_H
 #define TAKT_HOST_AHEAD_SOLVER_H
@@ -33,9 +33,9 @@ struct solver *solver_new(unsigned workers, const struct ahead_modes *modes);
 void solver_free(struct solver *s);
 
 /*
- * Improves a trajectory along a path until it is legal; longest: the intervals beyond which it is of no use, and the solver
- * gives up (SOLVER_STUCK). Progress is told from 0 to 1 now and then, by one thread; false
- * from it stops the work. progress may be NULL.
+ * Improves a trajectory along a path until it is legal; longest: the intervals beyond which it is
+ * of no use, and the solver gives up (SOLVER_STUCK). Progress is told from 0 to 1 now and then, by
+ * one thread; false from it stops the work. progress may be NULL.
  */
 enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
                               const struct ahead_limits *limits, struct trail *trail,

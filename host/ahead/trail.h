@@ -1,14 +1,18 @@
 /*
- * The trajectory of one section: a uniform cubic B-spline over time, and where along the path it is.
+ * The trajectory of one section: a uniform cubic B-spline over time, and where along the path it
+ * is.
  *
- * Knots are step_s apart. Control points c_0 ... c_(n+2) belong to n intervals; with D the difference of neighbours,
+ * Knots are step_s apart. Control points c_0 ... c_(n+2) belong to n intervals; with D the
+ * difference of neighbours,
  *
  *     |D c| <= V step, |D2 c| <= A step^2, |D3 c| <= J step^3
  *
- * bounds velocity, acceleration and jerk of the curve, and so every difference of setpoints taken from it.
+ * bounds velocity, acceleration and jerk of the curve, and so every difference of setpoints taken
+ * from it.
  *
- * On a machine whose axes have up to m modes the curve w is one of degree 3 + 2 m, with 2 m more control points, from
- * which those of the motors' and of the tool's cubic curves follow (modes.h). On a stiff one all three are the same.
+ * On a machine whose axes have up to m modes the curve w is one of degree 3 + 2 m, with 2 m more
+ * control points, from which those of the motors' and of the tool's cubic curves follow (modes.h).
+ * On a stiff one all three are the same.
  */
 #ifndef TAKT_HOST_AHEAD_TRAIL_H
 #define TAKT_HOST_AHEAD_TRAIL_H
@@ -27,7 +31,10 @@ struct trail {
     double (*control)[3]; /* of w: intervals + trail_ends, mm; owned */
     double (*motor)[3];   /* intervals + 3, mm; owned if there are modes, else control */
     double (*tool)[3];    /* likewise */
-    /* The tool where the machine's modes are others (modes.h), if there are modes; and how the first two points of it swing. */
+    /*
+     * The tool where the machine's modes are others (modes.h), if there are modes; and how the
+     * first two points of it swing.
+     */
     double (*stray[MODES_STRAYS])[3];
     double swing[MODES_STRAYS][2][3];
     size_t rest;      /* knots at its end in which all rests but stray tools */
@@ -45,7 +52,10 @@ static inline size_t trail_ends(unsigned modes)
 bool trail_allocate(struct trail *t, size_t intervals, unsigned modes);
 void trail_free(struct trail *t);
 
-/* A curve of a stiff machine's, from rest to rest, becomes one of these modes: it rests longer at its ends. False: out of memory. */
+/*
+ * A curve of a stiff machine's, from rest to rest, becomes one of these modes: it rests longer at
+ * its ends. False: out of memory.
+ */
 bool trail_soften(struct trail *t, const struct ahead_modes *modes);
 
 /* to is for intervals of from, from `first` on: it swings and rests as that does. */

@@ -9,7 +9,10 @@
 /* The rate's square is not below this, whatever overshoots. */
 #define SQUARE_MIN 0.04
 
-/* How far along the path a closest point is looked for: so many times the way of a knot, within bounds. */
+/*
+ * How far along the path a closest point is looked for: so many times the way of a knot, within
+ * bounds.
+ */
 #define REACH_PART   2.0
 #define REACH_MIN_MM 0.06
 #define REACH_MAX_MM 0.5
@@ -96,8 +99,9 @@ static size_t end_on_a_knot(struct warp *a)
 }
 
 /*
- * The old knot u at a time within an interval: the polynomial of degree 5 with u, du/dt = 1 / pace and d2u/dt2 of both ends;
- * d2u/dt2 by the slope of y alone, the stretch is too slow to matter: u' = sqrt(y), u" = y' / 2.
+ * The old knot u at a time within an interval: the polynomial of degree 5 with u, du/dt = 1 / pace
+ * and d2u/dt2 of both ends; d2u/dt2 by the slope of y alone, the stretch is too slow to matter: u'
+ * = sqrt(y), u" = y' / 2.
  */
 static double knot_at(const struct warp *a, size_t cell, double time)
 {
@@ -143,8 +147,8 @@ static void point_at(const struct warp *a, double u, double point[3])
 }
 
 /*
- * Places at the new half knots, and into the control points what the curve is at the new knots: control point
- * j + 1 + modes is in the middle of those that make knot j.
+ * Places at the new half knots, and into the control points what the curve is at the new knots:
+ * control point j + 1 + modes is in the middle of those that make knot j.
  */
 static void sample(const struct warp *a, struct trail *t)
 {
@@ -170,12 +174,18 @@ struct knots {
     double *right;
 };
 
-/* d! times the weights of control points at a knot of a curve of degree d = 3 + 2 modes, from the middle one on; and d! */
+/*
+ * d! times the weights of control points at a knot of a curve of degree d = 3 + 2 modes, from the
+ * middle one on; and d!
+ */
 static const double knot_weight[MODES_MAX + 1][2 + MODES_MAX] = {
     {4, 1}, {66, 26, 1}, {2416, 1191, 120, 1}};
 static const double knot_sum[MODES_MAX + 1] = {6, 120, 5040};
 
-/* The right side of control point k, without what is before it, by elimination or known, and what is known behind it. */
+/*
+ * The right side of control point k, without what is before it, by elimination or known, and what
+ * is known behind it.
+ */
 static double eliminated(const struct warp *a, const struct trail *t, const struct knots *of,
                          size_t k, int axis)
 {
@@ -192,8 +202,8 @@ static double eliminated(const struct warp *a, const struct trail *t, const stru
 }
 
 /*
- * sum_n weight_n c_(k+n) = p_k between the ends, which are known. What has not been moved is found again, jumps of the
- * highest derivative included.
+ * sum_n weight_n c_(k+n) = p_k between the ends, which are known. What has not been moved is found
+ * again, jumps of the highest derivative included.
  */
 static void points_to_control(const struct warp *a, struct trail *t, const struct knots *of)
 {

@@ -71,7 +71,10 @@ static void set_feed(const struct window *w, struct problem_cell *cell, double (
         cell->feed_now[i] = way[i] / limit;
 }
 
-/* No more acceleration than all axes may have, mm a knot squared; what modes make of it has no such bound. */
+/*
+ * No more acceleration than all axes may have, mm a knot squared; what modes make of it has no such
+ * bound.
+ */
 static double most_bend(const struct ahead_limits *l)
 {
     return l->modes.count > 0 ? MATHS_INFINITY
@@ -99,9 +102,10 @@ static double lag_of(const struct window *w, size_t k)
 }
 
 /*
- * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a knot for the path, a cycle for its junctions, which are
- * verified by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
- * would narrow the tolerance.
+ * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a
+ * knot for the path, a cycle for its junctions, which are verified by the straight lines between
+ * setpoints. It is the acceleration that there is, not the limit: else a higher limit would narrow
+ * the tolerance.
  */
 static double radius_of(const struct window *w, const struct ahead_element *e, size_t k, double t)
 {
@@ -120,7 +124,9 @@ static bool is_beside(const struct problem_ball *ball)
     return maths_abs(along) <= BESIDE_PART * vector_length(ball->offset) + BESIDE_MM;
 }
 
-/* Within reach of its closest point: the path may be left sideways only; a corner in no direction. */
+/*
+ * Within reach of its closest point: the path may be left sideways only; a corner in no direction.
+ */
 static void set_tube(const struct window *w, struct problem_ball *ball, size_t k,
                      const double weight[4], double place_mm, size_t *hint)
 {
@@ -139,7 +145,10 @@ static void set_tube(const struct window *w, struct problem_ball *ball, size_t k
     ball->radius_mm = radius_of(w, e, k, 0.5);
 }
 
-/* A stray tool is wherever it has got to: its closest point of the path is no farther along the path than twice as far as it is from the tool. */
+/*
+ * A stray tool is wherever it has got to: its closest point of the path is no farther along the
+ * path than twice as far as it is from the tool.
+ */
 static void set_stray_ball(const struct window *w, struct problem_ball *ball, size_t s, size_t k,
                            const double weight[4], double place_mm, size_t hint)
 {
@@ -164,7 +173,10 @@ static void set_stray_ball(const struct window *w, struct problem_ball *ball, si
     ball->radius_mm = e->exact ? 0 : STRAY_TOLERANCES * radius_of(w, e, k, 0.5);
 }
 
-/* The row about the second of three control points: weights of modes.h; time as problem.h has it, E and q both being curves. */
+/*
+ * The row about the second of three control points: weights of modes.h; time as problem.h has it, E
+ * and q both being curves.
+ */
 static void set_swing(const struct window *w, struct problem_swing *row, size_t s, size_t k,
                       int axis, const struct problem_side *motor)
 {
@@ -261,8 +273,8 @@ static double distance_at(const struct trail *t, double (*control)[3], size_t si
 }
 
 /*
- * The half knot nearest to a corner: from where the path's corner is passed downhill, so that another pass of a path that
- * turns back on itself is not taken for it.
+ * The half knot nearest to a corner: from where the path's corner is passed downhill, so that
+ * another pass of a path that turns back on itself is not taken for it.
  */
 static size_t nearest_site(const struct trail *t, double (*control)[3], const double corner[3],
                            size_t site, size_t first, size_t last)
@@ -288,7 +300,10 @@ static struct problem_ball *free_ball(const struct problem *p, size_t cell, int 
     return &ball[slot];
 }
 
-/* The curve at u comes within reach of a junction; of a curved one sideways, so that it may still move along. */
+/*
+ * The curve at u comes within reach of a junction; of a curved one sideways, so that it may still
+ * move along.
+ */
 static void add_junction(struct problem *p, const struct window *w, const struct ahead_element *e,
                          const struct passer *by, double u)
 {

@@ -1,6 +1,6 @@
 /*
- * A window of the trajectory as a problem of the room convex: its rows for tolerance, corners, velocity, acceleration and
- * jerk.
+ * A window of the trajectory as a problem of the room convex: its rows for tolerance, corners,
+ * velocity, acceleration and jerk.
  */
 #ifndef TAKT_HOST_AHEAD_WINDOW_H
 #define TAKT_HOST_AHEAD_WINDOW_H

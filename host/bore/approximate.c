@@ -1,10 +1,11 @@
 /*
- * As long pieces as the tolerance allows, one after the other. How far a piece is off is measured: the curve's points at
- * SAMPLES places of it against the piece. Between two samples the deviation, a smooth bump or two over the piece, can be
- * larger by a few parts in 1000; SHARE leaves room for that.
+ * As long pieces as the tolerance allows, one after the other. How far a piece is off is measured:
+ * the curve's points at SAMPLES places of it against the piece. Between two samples the deviation,
+ * a smooth bump or two over the piece, can be larger by a few parts in 1000; SHARE leaves room for
+ * that.
  *
- * A pair of arcs that begins in A along t and ends in B along u (biarc): with equal lengths d of the tangents from the
- * ends to the tangent at the junction J,
+ * A pair of arcs that begins in A along t and ends in B along u (biarc): with equal lengths d of
+ * the tangents from the ends to the tangent at the junction J,
  *
  *     v = B - A,   2 d^2 (1 - t . u) + 2 d v . (t + u) - v . v = 0,   J half way from A + d t to B - d u
  */
@@ -54,7 +55,10 @@ static double tangent_length(const double v[2], const double t[2], const double 
     return dot(v, v) / (b + maths_sqrt(b * b + a * dot(v, v)));
 }
 
-/* Centre of the arc from a, along t, to b: a + n (b - a)^2 / (2 (b - a) . n), n the normal to the left. */
+/*
+ * Centre of the arc from a, along t, to b: a + n (b - a)^2 / (2 (b - a) . n), n the normal to the
+ * left.
+ */
 static void arc_centre(const double a[2], const double t[2], const double b[2], double centre[2])
 {
     double v[2] = {b[0] - a[0], b[1] - a[1]};
@@ -94,7 +98,10 @@ static double distance(const double a[2], const double b[2])
     return maths_sqrt(dot(v, v));
 }
 
-/* For a point beside the piece that begins at start: an arc counts as its circle, a line as without ends. */
+/*
+ * For a point beside the piece that begins at start: an arc counts as its circle, a line as without
+ * ends.
+ */
 static double off_piece(const double start[2], const struct bore_piece *piece,
                         const double point[2])
 {
@@ -106,7 +113,10 @@ static double off_piece(const double start[2], const struct bore_piece *piece,
     return maths_abs(way[0] * off[1] - way[1] * off[0]) / maths_sqrt(dot(way, way));
 }
 
-/* Is the point beside the first of two arcs? The junction is the place where both have the same direction. */
+/*
+ * Is the point beside the first of two arcs? The junction is the place where both have the same
+ * direction.
+ */
 static bool is_before(const double junction[2], const struct bore_piece *first,
                       const double point[2])
 {

@@ -55,8 +55,8 @@ void bore_set_spiral(const struct bore_job *job, enum bore_pass pass, struct bor
 unsigned bore_depth_steps(const struct bore_job *job);
 
 /*
- * The way at one depth, from the start to where the next depth may begin: roughing spiral and circle; or finishing spiral,
- * circle and mirror image. bore_path_free is due; look at failed.
+ * The way at one depth, from the start to where the next depth may begin: roughing spiral and
+ * circle; or finishing spiral, circle and mirror image. bore_path_free is due; look at failed.
  */
 void bore_make_path(const struct bore_job *job, enum bore_pass pass, struct bore_path *p);
 

@@ -1,6 +1,6 @@
 /*
- * A path in the plane of the hole: pieces that follow each other, all counter-clockwise. Owned by the caller, grows as
- * needed.
+ * A path in the plane of the hole: pieces that follow each other, all counter-clockwise. Owned by
+ * the caller, grows as needed.
  */
 #ifndef TAKT_BORE_PATH_H
 #define TAKT_BORE_PATH_H
@@ -41,8 +41,8 @@ void bore_path_helix(struct bore_path *p, double down_mm);
 const double *bore_path_start(const struct bore_path *p, size_t piece);
 
 /*
- * Adds the pieces from first to count backwards, as their mirror image in the line through the origin and the path's end:
- * a way out like the way in.
+ * Adds the pieces from first to count backwards, as their mirror image in the line through the
+ * origin and the path's end: a way out like the way in.
  */
 void bore_path_add_mirrored(struct bore_path *p, size_t first, size_t count);
 

@@ -1,6 +1,6 @@
 /*
- * Runs side by side as one SVG: the path of each, and feed, acceleration and jerk over time, and what is removed over
- * turns, on common scales.
+ * Runs side by side as one SVG: the path of each, and feed, acceleration and jerk over time, and
+ * what is removed over turns, on common scales.
  */
 #ifndef TAKT_BORE_PICTURE_H
 #define TAKT_BORE_PICTURE_H

@@ -1,16 +1,18 @@
 /*
- * The cutter, a disc of radius c, goes out from the hole's centre O without leaving a core. What it has cleared is then
- * seen from O without anything in between, so that its edge is a distance over the angle alpha. A disc at p, |p| = rho, in
- * the direction gamma, clears as far as
+ * The cutter, a disc of radius c, goes out from the hole's centre O without leaving a core. What it
+ * has cleared is then seen from O without anything in between, so that its edge is a distance over
+ * the angle alpha. A disc at p, |p| = rho, in the direction gamma, clears as far as
  *
  *     rho cos(alpha - gamma) + sqrt(c^2 - rho^2 sin^2(alpha - gamma))
  *
- * and the area that it removes is the sum of (edge'^2 - edge^2) / 2 d alpha. Area by length of way is the radial
- * engagement; engaged is the part of the cutter's front half whose points are beyond the edge.
+ * and the area that it removes is the sum of (edge'^2 - edge^2) / 2 d alpha. Area by length of way
+ * is the radial engagement; engaged is the part of the cutter's front half whose points are beyond
+ * the edge.
  *
- * A helix comes down to one level after the other, and clears each by a disc, where it is reached, and a turn around it. With
- * a cutter of more than half the hole every disc holds O, so that a level's edge is a distance over the angle, too. At each
- * moment all levels of a turn are under way, evenly over their turns.
+ * A helix comes down to one level after the other, and clears each by a disc, where it is reached,
+ * and a turn around it. With a cutter of more than half the hole every disc holds O, so that a
+ * level's edge is a distance over the angle, too. At each moment all levels of a turn are under
+ * way, evenly over their turns.
  */
 #include "bore/removal.h"
 
@@ -98,7 +100,10 @@ static bool is_material(const struct sweep *s, double x_mm, double y_mm, bool be
            edge_mm(s, x_mm, y_mm, before) + BEYOND * s->cutter_mm;
 }
 
-/* From the cutter's right side, which is at the wall, inwards: to where the turn before had cleared. */
+/*
+ * From the cutter's right side, which is at the wall, inwards: to where the turn before had
+ * cleared.
+ */
 static double layer_at(const struct sweep *s, const double at_mm[2], double heading_rad)
 {
     double least_mm = 0;
@@ -116,7 +121,9 @@ static double layer_at(const struct sweep *s, const double at_mm[2], double head
     return least_mm;
 }
 
-/* Part of the front half, from right to left of the direction of motion, that stands in material. */
+/*
+ * Part of the front half, from right to left of the direction of motion, that stands in material.
+ */
 static double engaged_at(const struct sweep *s, const double at_mm[2], double heading_rad)
 {
     unsigned inside = 0;
@@ -187,7 +194,8 @@ static bool advance(struct bore_removal *r, struct sweep *s, const double at_mm[
 }
 
 /*
- * A level where the cutter stands, and its way since, for this many turns. first_mm2: what its first disc has removed.
+ * A level where the cutter stands, and its way since, for this many turns. first_mm2: what its
+ * first disc has removed.
  */
 static bool sweep_level(struct bore_removal *r, const struct bore_track *t, size_t first,
                         double cutter_mm, double turns, double *first_mm2)

@@ -1,5 +1,6 @@
 /*
- * How evenly a cutter removes material on its way out from the hole's centre, from the area that it sweeps.
+ * How evenly a cutter removes material on its way out from the hole's centre, from the area that it
+ * sweeps.
  */
 #ifndef TAKT_BORE_REMOVAL_H
 #define TAKT_BORE_REMOVAL_H
@@ -22,7 +23,10 @@ struct bore_removal {
     size_t count, capacity;
 };
 
-/* Chip area for each mm of depth, by way: area / length. More than the layer, since the wall is longer than the way. */
+/*
+ * Chip area for each mm of depth, by way: area / length. More than the layer, since the wall is
+ * longer than the way.
+ */
 double bore_window_width(const struct bore_window *w);
 
 struct bore_range {
@@ -38,9 +42,10 @@ struct bore_evenness {
 bool bore_removal_make(struct bore_removal *r, const struct bore_track *t, double cutter_radius_mm);
 
 /*
- * Likewise of a helix that goes down_mm a turn and then around: what happens at every moment of a long one, as the mean over
- * the levels that are under way then; as many turns of it as are asked for, each like the other. In *level what happens at
- * one of them, from the moment the cutter comes down to it until it has gone around. Both are to be freed.
+ * Likewise of a helix that goes down_mm a turn and then around: what happens at every moment of a
+ * long one, as the mean over the levels that are under way then; as many turns of it as are asked
+ * for, each like the other. In *level what happens at one of them, from the moment the cutter comes
+ * down to it until it has gone around. Both are to be freed.
  */
 bool bore_removal_make_helix(struct bore_removal *r, struct bore_removal *level,
                              const struct bore_track *t, double cutter_radius_mm, double down_mm,

@@ -1,6 +1,7 @@
 /*
- * Ways to spiral out to a circle that hole milling by involutes is compared with (seed 001). Each begins at the centre,
- * makes n turns, a helix one, and then the circle of radius R about it, all counter-clockwise.
+ * Ways to spiral out to a circle that hole milling by involutes is compared with (seed 001). Each
+ * begins at the centre, makes n turns, a helix one, and then the circle of radius R about it, all
+ * counter-clockwise.
  */
 #ifndef TAKT_BORE_RIVAL_H
 #define TAKT_BORE_RIVAL_H

@@ -4,13 +4,13 @@
  *     x = r [cos(phi + psi) + phi sin(phi + psi) - cos psi]
  *     y = r [sin(phi + psi) - phi cos(phi + psi) - sin psi]
  *
- * At phi = 2 pi n this touches the circle of radius R = 2 pi n r about the origin. The distance from the origin grows
- * with phi:
+ * At phi = 2 pi n this touches the circle of radius R = 2 pi n r about the origin. The distance
+ * from the origin grows with phi:
  *
  *     rho^2 = r^2 [2 + phi^2 - 2 (cos phi + phi sin phi)],     d rho / d phi = r^2 phi (1 - cos phi) / rho
  *
- * and stands still at every whole turn. So plain Newton steps fly off there: each step is kept within the bracket that
- * the signs so far leave, and halves it when it would not shrink the error.
+ * and stands still at every whole turn. So plain Newton steps fly off there: each step is kept
+ * within the bracket that the signs so far leave, and halves it when it would not shrink the error.
  */
 #include "bore/spiral.h"
 
@@ -29,8 +29,9 @@ void bore_spiral_set(struct bore_spiral *s, double radius_mm, unsigned turns)
 }
 
 /*
- * For psi = 0, in units of r: x = phi sin phi - 2 sin^2(phi / 2), y = sin phi - phi cos phi. Written so that at small
- * phi, where x = phi^2 / 2 and y = phi^3 / 3, nothing that matters cancels.
+ * For psi = 0, in units of r: x = phi sin phi - 2 sin^2(phi / 2), y = sin phi - phi cos phi.
+ * Written so that at small phi, where x = phi^2 / 2 and y = phi^3 / 3, nothing that matters
+ * cancels.
  */
 static void unit_point(double phi, double point[2])
 {
@@ -89,8 +90,8 @@ double bore_unrolled(double base_mm, double turns, double distance_mm)
 }
 
 /*
- * psi turns the curve's point at phi0 onto the start: the difference of both directions. The source's arccos (10) would
- * lose its sign.
+ * psi turns the curve's point at phi0 onto the start: the difference of both directions. The
+ * source's arccos (10) would lose its sign.
  */
 void bore_spiral_begin_at(struct bore_spiral *s, const double start_mm[2])
 {

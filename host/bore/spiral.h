@@ -1,6 +1,7 @@
 /*
- * The spiral of hole milling: an involute that ends tangent, and with the same radius of curvature, on the circle of
- * the hole (seed 001, eq. 5 to 16). Coordinates in mm about the centre of the hole; counter-clockwise.
+ * The spiral of hole milling: an involute that ends tangent, and with the same radius of curvature,
+ * on the circle of the hole (seed 001, eq. 5 to 16). Coordinates in mm about the centre of the
+ * hole; counter-clockwise.
  */
 #ifndef TAKT_BORE_SPIRAL_H
 #define TAKT_BORE_SPIRAL_H
@@ -29,11 +30,17 @@ void bore_spiral_set(struct bore_spiral *s, double radius_mm, unsigned turns);
 /* Lets it begin at a point nearer to the centre than R; at the centre the direction stays. */
 void bore_spiral_begin_at(struct bore_spiral *s, const double start_mm[2]);
 
-/* Lets it begin where the radius of curvature is this, 0 ... R; or where so much length is left, up to all. */
+/*
+ * Lets it begin where the radius of curvature is this, 0 ... R; or where so much length is left, up
+ * to all.
+ */
 void bore_spiral_begin_radius(struct bore_spiral *s, double radius_start_mm);
 void bore_spiral_begin_length(struct bore_spiral *s, double length_mm);
 
-/* The phi, 0 ... 2 pi n, at which a spiral of that base circle is distance_mm, 0 ... R, from the centre. */
+/*
+ * The phi, 0 ... 2 pi n, at which a spiral of that base circle is distance_mm, 0 ... R, from the
+ * centre.
+ */
 double bore_unrolled(double base_mm, double turns, double distance_mm);
 
 /* Where it is when phi is unrolled, and the other way: how far from the centre. */

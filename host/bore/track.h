@@ -14,7 +14,9 @@ struct bore_track {
     size_t count, capacity;
 };
 
-/* By differences of the setpoints over the cycle, the axes at rest at the origin before the first. */
+/*
+ * By differences of the setpoints over the cycle, the axes at rest at the origin before the first.
+ */
 struct bore_motion {
     double feed_mm_s;          /* along the path */
     double acceleration_mm_s2; /* of the axis that has more */

@@ -131,8 +131,8 @@ struct bus {
  */
 bool bus_init(struct bus *bus, uint32_t bitrate);
 /*
- * The same; with rates->data > 0 for ports that speak CAN FD: every data frame is one, with the data at that rate, from the
- * nominal one to BUS_DATA_BITRATE_MAX.
+ * The same; with rates->data > 0 for ports that speak CAN FD: every data frame is one, with the
+ * data at that rate, from the nominal one to BUS_DATA_BITRATE_MAX.
  */
 bool bus_init_rates(struct bus *bus, const struct frame_rates *rates);
 /* Its ports speak CAN FD. */
@@ -167,7 +167,8 @@ enum bus_confinement bus_get_confinement(const struct bus *bus, unsigned port);
 
 /*
  * Longest time from a send call to the end of the frame, of frames with this identifier, since
- * bus_init or bus_clear_responses and before bus_end_responses, ns; 0: none was sent. id: below BUS_ID_COUNT.
+ * bus_init or bus_clear_responses and before bus_end_responses, ns; 0: none was sent. id: below
+ * BUS_ID_COUNT.
  */
 uint32_t bus_get_response_max_ns(const struct bus *bus, unsigned id);
 void bus_clear_responses(struct bus *bus);

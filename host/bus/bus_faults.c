@@ -238,14 +238,15 @@ static uint64_t first_bits_ns(const struct bus *bus, const struct frame_levels *
 }
 
 /*
- * Time from the start of a frame to the end of the error frame that follows when bit k of it is flipped.
+ * Time from the start of a frame to the end of the error frame that follows when bit k of it is
+ * flipped.
  *
  *     k + 1 + wait + 6 + 8 bits     wait: 0 ... 6
  *
- * The sender sees the wrong bit and begins its flag of 6 dominant bits at once, at the nominal rate. Receivers see 6
- * equal bits in a row where stuffing allows 5, and then begin theirs: with r dominant bits at the
- * end of the frame so far, 6 - r later, by the rate at which they read. A bit that is fixed (end of frame), or that makes 6
- * equal bits itself, is seen by all at once.
+ * The sender sees the wrong bit and begins its flag of 6 dominant bits at once, at the nominal
+ * rate. Receivers see 6 equal bits in a row where stuffing allows 5, and then begin theirs: with r
+ * dominant bits at the end of the frame so far, 6 - r later, by the rate at which they read. A bit
+ * that is fixed (end of frame), or that makes 6 equal bits itself, is seen by all at once.
  */
 static uint64_t until_error_ends_ns(const struct bus *bus, struct frame_levels *levels, unsigned k)
 {

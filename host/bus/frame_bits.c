@@ -96,7 +96,9 @@ static void add_stuffing(struct stream_bits *stream, unsigned byte)
     take_stuffing(stream, stream->tables->stuffing[byte][stream->state]);
 }
 
-/* The low bytes of header, of which pad is no part, before so much data; the pad is in the first. */
+/*
+ * The low bytes of header, of which pad is no part, before so much data; the pad is in the first.
+ */
 static void add_header(struct stream_bits *stream, uint64_t header, uint64_t pad, unsigned bytes,
                        unsigned length)
 {
@@ -160,9 +162,10 @@ static unsigned count_standard(const struct frame_bits *tables, const struct wir
 }
 
 /*
- * CAN FD, ISO 11898-1:2015, 10.4.2; frame_levels.c has the picture. At the nominal rate start to BRS (17 bits, 36 with a
- * 29-bit identifier), acknowledge, its delimiter, end of frame: 9; at the data rate ESI and DLC, the data, the CRC's field of 27
- * bits up to 16 bytes and 32 above (stuff count 4, CRC 17 or 21, fixed stuff bits 6 or 7), its delimiter.
+ * CAN FD, ISO 11898-1:2015, 10.4.2; frame_levels.c has the picture. At the nominal rate start to
+ * BRS (17 bits, 36 with a 29-bit identifier), acknowledge, its delimiter, end of frame: 9; at the
+ * data rate ESI and DLC, the data, the CRC's field of 27 bits up to 16 bytes and 32 above (stuff
+ * count 4, CRC 17 or 21, fixed stuff bits 6 or 7), its delimiter.
  */
 #define FD_HEADER          17u
 #define FD_HEADER_EXTENDED 36u
@@ -198,7 +201,10 @@ static void add_single_bits(struct stream_bits *stream, uint64_t value, unsigned
         take_stuffing(stream, stuffing_of_bits(stream->state, (unsigned)(value >> bits) & 1, 1));
 }
 
-/* A stuffed bit at the very end is not sent, since a fixed one follows. It would be opposite to the last. */
+/*
+ * A stuffed bit at the very end is not sent, since a fixed one follows. It would be opposite to the
+ * last.
+ */
 static bool is_stuffed_last(const struct stream_bits *stream, unsigned last)
 {
     return (stream->state & 1u) != (last & 1u);
@@ -241,14 +247,16 @@ struct frame_length frame_bits_count_fd(const struct frame_bits *tables,
 }
 
 /*
- * Classical: Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007).
+ * Classical: Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis,
+ * Real-Time Systems 35 (2007).
  *
- * CAN FD: of its 17 first bits the last that is stuffed behind is the 13th, since FDF, res and BRS differ from each other;
- * ESI begins a run of its own, and nothing is stuffed behind the last of the 5 + 8n bits from it on:
+ * CAN FD: of its 17 first bits the last that is stuffed behind is the 13th, since FDF, res and BRS
+ * differ from each other; ESI begins a run of its own, and nothing is stuffed behind the last of
+ * the 5 + 8n bits from it on:
  *     nominal  17 + floor((14 - 1) / 4) + 9 + 3 = 32
  *     data     5 + 8n + floor((5 + 8n - 2) / 4) + 27 or 32 + 1 = 33 + 10n, 38 + 10n above 16 bytes
- * (for n = 0: 33, too). As in Bordoloi, Samii: The frame packing problem for CAN-FD, RTSS 2014, with the five bits of stuff
- * count that ISO has added since.
+ * (for n = 0: 33, too). As in Bordoloi, Samii: The frame packing problem for CAN-FD, RTSS 2014,
+ * with the five bits of stuff count that ISO has added since.
  */
 struct frame_length frame_bits_worst(unsigned length, bool fd)
 {

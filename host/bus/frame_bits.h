@@ -19,11 +19,13 @@
 /*
  * Tables that take a byte at a time.
  *
- * checksum[behind][byte] is what a byte with so many bytes behind it adds to the CRC-15 remainder, in the upper 15 bits of
- * 16: the remainder of several bytes is the sum (exclusive or) of what each adds.
+ * checksum[behind][byte] is what a byte with so many bytes behind it adds to the CRC-15 remainder,
+ * in the upper 15 bits of 16: the remainder of several bytes is the sum (exclusive or) of what each
+ * adds.
  *
- * state: bits 3 ... 1 the number of equal bits at the end of the stream (1 ... 4), bit 0 their value. stuffing[byte][state]
- * is the state after the byte in its lower four bits and the number of bits stuffed (0 ... 2) above them.
+ * state: bits 3 ... 1 the number of equal bits at the end of the stream (1 ... 4), bit 0 their
+ * value. stuffing[byte][state] is the state after the byte in its lower four bits and the number of
+ * bits stuffed (0 ... 2) above them.
  */
 #define FRAME_BITS_STATES 16 /* those of runs of 1 ... 4 are used */
 #define FRAME_BITS_SUMMED 13 /* header with a 29-bit identifier, and data of a classical frame */
@@ -36,21 +38,24 @@ struct frame_bits {
 void frame_bits_init(struct frame_bits *tables);
 
 /*
- * Bit times from start of frame to the end of the frame, without intermission, of a classical frame. frame->length <=
- * CAN_CLASSIC_MAX.
+ * Bit times from start of frame to the end of the frame, without intermission, of a classical
+ * frame. frame->length <= CAN_CLASSIC_MAX.
  */
 unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame);
 
 /*
- * Bit times at either rate. The rate is switched within a bit, at its sample point: to the higher one in BRS, back in the
- * CRC delimiter. What the one has at the nominal rate the other lacks, so together they are one bit of each; here BRS counts
- * for nominal, and the delimiter for data.
+ * Bit times at either rate. The rate is switched within a bit, at its sample point: to the higher
+ * one in BRS, back in the CRC delimiter. What the one has at the nominal rate the other lacks, so
+ * together they are one bit of each; here BRS counts for nominal, and the delimiter for data.
  */
 struct frame_length {
     unsigned nominal, data;
 };
 
-/* The bit rates of a bus, bit/s. data: of CAN FD behind the rate switch; 0: the bus has classical frames alone. */
+/*
+ * The bit rates of a bus, bit/s. data: of CAN FD behind the rate switch; 0: the bus has classical
+ * frames alone.
+ */
 struct frame_rates {
     uint32_t nominal, data;
 };
@@ -70,7 +75,10 @@ static inline struct frame_length frame_bits_count_port(const struct frame_bits 
     return (struct frame_length){frame_bits_count(tables, frame), 0};
 }
 
-/* With worst-case stuffing and intermission, of a data frame with an 11-bit identifier; README.md has the formulas. */
+/*
+ * With worst-case stuffing and intermission, of a data frame with an 11-bit identifier; README.md
+ * has the formulas.
+ */
 struct frame_length frame_bits_worst(unsigned length, bool fd);
 
 /* One bit of each rate, rounded to a nanosecond; data_ns 0: there is none. */

@@ -6,10 +6,11 @@
  *
  *     | S | count 3, parity | S | 4 of the CRC | S | 4 ... | delimiter 1 | acknowledge, delimiter, end of frame |
  *
- * S: a fixed stuff bit, opposite to the bit before it; one before the stuff count, one behind every four bits. It takes the
- * place of a stuffed bit that the end of the data asks for. The count is that of stuffed bits modulo 8, as a Gray code, with
- * even parity. The CRC, of 17 bits up to 16 bytes and of 21 above, covers all bits before it, stuffed ones included, but
- * not the fixed ones; its register begins with a one at its upper end.
+ * S: a fixed stuff bit, opposite to the bit before it; one before the stuff count, one behind every
+ * four bits. It takes the place of a stuffed bit that the end of the data asks for. The count is
+ * that of stuffed bits modulo 8, as a Gray code, with even parity. The CRC, of 17 bits up to 16
+ * bytes and of 21 above, covers all bits before it, stuffed ones included, but not the fixed ones;
+ * its register begins with a one at its upper end.
  */
 #include "bus/frame_levels.h"
 
@@ -57,7 +58,10 @@ static void stuff(struct writer *w)
         sum(w, level);
 }
 
-/* The lowest bits of value, the highest of them first. What is due to be stuffed is so before the next bit. */
+/*
+ * The lowest bits of value, the highest of them first. What is due to be stuffed is so before the
+ * next bit.
+ */
 static void put_bits(struct writer *w, unsigned value, unsigned bits)
 {
     while (bits-- > 0) {
@@ -93,7 +97,9 @@ static void set_classical(struct frame_levels *levels, const struct can_frame *f
     put_end(&w);
 }
 
-/* Stuff count, its parity, and the CRC, which covers them: each four bits behind a fixed stuff bit. */
+/*
+ * Stuff count, its parity, and the CRC, which covers them: each four bits behind a fixed stuff bit.
+ */
 static void put_fixed(struct writer *w, unsigned crc_bits)
 {
     const unsigned count = w->stuffed % 8, gray = count ^ count >> 1;

@@ -1,5 +1,6 @@
 /*
- * A frame of a port as the levels on the wire, bit by bit, for whoever asks what becomes of a flipped one.
+ * A frame of a port as the levels on the wire, bit by bit, for whoever asks what becomes of a
+ * flipped one.
  */
 #ifndef TAKT_BUS_FRAME_LEVELS_H
 #define TAKT_BUS_FRAME_LEVELS_H

@@ -1,6 +1,7 @@
 /*
- * A CAN frame of any kind, as adapters, sockets and logs know it. The firmware itself speaks
- * data frames with 11-bit identifiers, all of one kind, and remote ones (hal/can.h); everything else passes by it.
+ * A CAN frame of any kind, as adapters, sockets and logs know it. The firmware itself speaks data
+ * frames with 11-bit identifiers, all of one kind, and remote ones (hal/can.h); everything else
+ * passes by it.
  */
 #ifndef TAKT_BUS_WIRE_FRAME_H
 #define TAKT_BUS_WIRE_FRAME_H
@@ -35,7 +36,8 @@ struct wire_listener {
 };
 
 /*
- * A frame of a port that speaks CAN FD has these flags, and zeros up to a length that there is. A remote frame never.
+ * A frame of a port that speaks CAN FD has these flags, and zeros up to a length that there is. A
+ * remote frame never.
  */
 #define WIRE_KIND_FD (WIRE_FD | WIRE_RATE_SWITCH)
 void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can, bool fd);

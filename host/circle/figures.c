@@ -2,7 +2,10 @@
 
 #include "base/maths.h"
 
-/* Around a reversal, in degrees: the deviation is taken for straight between these two, and for the turning's up to the first. */
+/*
+ * Around a reversal, in degrees: the deviation is taken for straight between these two, and for the
+ * turning's up to the first.
+ */
 #define NEAR_DEG 10.0
 #define FAR_DEG  15.0
 

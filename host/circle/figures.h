@@ -10,12 +10,16 @@
 
 enum circle_way { CIRCLE_CCW, CIRCLE_CW, CIRCLE_WAYS };
 
-/* From +first over +second, in the order of the angle: there the first axis, the second, the first, ... turns round. */
+/*
+ * From +first over +second, in the order of the angle: there the first axis, the second, the first,
+ * ... turns round.
+ */
 #define CIRCLE_QUADRANTS 4
 
 /*
- * Where an axis turns round, with the deviation just before and after it straight on: the step from the one to the other, outwards
- * in the order of the angle; and the farthest that the deviation between is off half-way between both.
+ * Where an axis turns round, with the deviation just before and after it straight on: the step from
+ * the one to the other, outwards in the order of the angle; and the farthest that the deviation
+ * between is off half-way between both.
  */
 struct circle_reversal {
     double step_mm, spike_mm;
@@ -29,7 +33,9 @@ struct circle_figures {
     struct circle_reversal reversal[CIRCLE_QUADRANTS];
 };
 
-/* Figures of turns together: G (b) of both ways. Reversals are those of the first. No place: all 0. */
+/*
+ * Figures of turns together: G (b) of both ways. Reversals are those of the first. No place: all 0.
+ */
 void circle_figures_of(const struct circle_turn *const turn[], unsigned turns,
                        struct circle_figures *figures);
 

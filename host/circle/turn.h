@@ -7,7 +7,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A place of the tool: its angle, 0 ... 2 pi from the plane's first axis to its second, and how far outside of the circle it is. */
+/*
+ * A place of the tool: its angle, 0 ... 2 pi from the plane's first axis to its second, and how far
+ * outside of the circle it is.
+ */
 struct circle_place {
     double angle_rad, out_mm;
 };

@@ -48,7 +48,10 @@ static const struct hint hints[] = {
 
 #define LAST_OFFSETS "G54 to G59.3 are there: G10 L2 P7 X10 sets G59.1, P8 and P9 the last two"
 
-/* Codes of other controllers that move something: to leave them out would cut something else, or elsewhere. ?: any digit. */
+/*
+ * Codes of other controllers that move something: to leave them out would cut something else, or
+ * elsewhere. ?: any digit.
+ */
 static const struct moving {
     const char *word;
     const char *meaning;

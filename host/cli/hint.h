@@ -11,8 +11,8 @@
 #define HINT_MAX 400
 
 /*
- * Into text, as lines that end in '\n'; empty when there is nothing to add. line: the line as it is found; at: where the
- * error is in it, length when that is not known.
+ * Into text, as lines that end in '\n'; empty when there is nothing to add. line: the line as it is
+ * found; at: where the error is in it, length when that is not known.
  */
 void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
                 char text[HINT_MAX]);

@@ -110,7 +110,10 @@ const char *message_did_you_mean(const char *prefix, const char *word)
     return text;
 }
 
-/* Bytes that a terminal would not print as one character are shown as a dot, so that the caret stays in place. */
+/*
+ * Bytes that a terminal would not print as one character are shown as a dot, so that the caret
+ * stays in place.
+ */
 static void message_show_line(const struct program_text *program, uint32_t line, uint32_t column)
 {
     char text[MESSAGE_SHOWN_MAX];
@@ -150,7 +153,10 @@ static bool message_goes_on(const char *line, size_t length, const char *word)
     return true;
 }
 
-/* In a line that has been translated a word may stand elsewhere than where it was found; 0: it is not there at all. */
+/*
+ * In a line that has been translated a word may stand elsewhere than where it was found; 0: it is
+ * not there at all.
+ */
 static uint32_t message_column(const struct program_text *program, const struct diagnostic *d)
 {
     char line[MESSAGE_LINE_MAX];

@@ -42,10 +42,15 @@ void message_from_program(const struct program_text *program, uint32_t line, con
 /* What a controller has to say at its start, if it has. */
 void message_controller_warning(const struct controller *controller);
 
-/* "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the next call. */
+/*
+ * "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the
+ * next call.
+ */
 const char *message_did_you_mean(const char *prefix, const char *word);
 
-/* Errors and warnings of a part program, with the line they are about and a caret under the column. */
+/*
+ * Errors and warnings of a part program, with the line they are about and a caret under the column.
+ */
 void message_program_error(const struct program_text *program, const struct diagnostic *diagnostic);
 void message_program_warning(const struct program_text *program,
                              const struct diagnostic *diagnostic);

@@ -73,7 +73,10 @@ struct option_correction {
     bool filter, compose;
 };
 
-/* Everything a command line may say; each sub-command offers a part. NULL: not given. Texts are argv's. */
+/*
+ * Everything a command line may say; each sub-command offers a part. NULL: not given. Texts are
+ * argv's.
+ */
 struct options {
     bool help;
     unsigned operands;
@@ -155,8 +158,8 @@ struct option_row {
 };
 
 /*
- * Lines that loops and subroutines may read again in all, unless --lines-max says otherwise: some seconds of reading, and
- * with a move of a millisecond each some hours of cutting.
+ * Lines that loops and subroutines may read again in all, unless --lines-max says otherwise: some
+ * seconds of reading, and with a move of a millisecond each some hours of cutting.
  */
 #define OPTIONS_LINES_MAX 10000000
 
@@ -207,8 +210,8 @@ struct option_row {
     }
 
 /*
- * Fills *options from the arguments after the sub-command's name (argv[0]). At least operands_min and at most
- * operands_max operands, unless --help is given. False after a message.
+ * Fills *options from the arguments after the sub-command's name (argv[0]). At least operands_min
+ * and at most operands_max operands, unless --help is given. False after a message.
  */
 bool options_read(struct options *options, const struct option_row *rows, unsigned operands_min,
                   unsigned operands_max, int argc, char **argv);

@@ -18,7 +18,9 @@ static bool output_file_fail(struct output_file *file, const char *what)
     return false;
 }
 
-/* Where the bytes will end up: behind links, so that renaming replaces the file and not the link. */
+/*
+ * Where the bytes will end up: behind links, so that renaming replaces the file and not the link.
+ */
 static bool output_file_resolve(struct output_file *file, const char *path, bool *straight)
 {
     struct stat status;
@@ -79,7 +81,9 @@ static bool output_file_close(struct output_file *file)
     return good;
 }
 
-/* A name may reach the disk before what it names: then a power cut leaves an empty file under it. */
+/*
+ * A name may reach the disk before what it names: then a power cut leaves an empty file under it.
+ */
 static bool output_file_keep(const struct output_file *file)
 {
     return file->aside[0] == '\0' ||
@@ -92,7 +96,10 @@ bool output_file_finish(struct output_file *file)
            output_file_fail(file, "cannot be written");
 }
 
-/* The new name, too. Where folders cannot be kept so, a power cut may leave the old file: that is whole as well. */
+/*
+ * The new name, too. Where folders cannot be kept so, a power cut may leave the old file: that is
+ * whole as well.
+ */
 static void keep_folder(const char *path)
 {
     char folder[OUTPUT_PATH_MAX];

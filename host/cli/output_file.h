@@ -1,9 +1,10 @@
 /*
- * An output file that is whole or not there: written beside its place, brought to the disk, then renamed. So neither a
- * signal nor a power cut leaves a part of it: what was there before stays. Finish all files of a command before the first
- * is placed, so that all are there or none.
+ * An output file that is whole or not there: written beside its place, brought to the disk, then
+ * renamed. So neither a signal nor a power cut leaves a part of it: what was there before stays.
+ * Finish all files of a command before the first is placed, so that all are there or none.
  *
- * "-" is standard output, and things that are no regular file (/dev/null, a pipe) are written straight.
+ * "-" is standard output, and things that are no regular file (/dev/null, a pipe) are written
+ * straight.
  */
 #ifndef TAKT_HOST_OUTPUT_FILE_H
 #define TAKT_HOST_OUTPUT_FILE_H

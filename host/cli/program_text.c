@@ -84,7 +84,9 @@ static bool is_unchanged(const struct program_text *text)
            status.st_mtim.tv_nsec == text->changed.tv_nsec;
 }
 
-/* The piece that begins where is to be read next; its length 0: the end. False: it cannot be read. */
+/*
+ * The piece that begins where is to be read next; its length 0: the end. False: it cannot be read.
+ */
 static bool next_piece(struct program_text_reader *r)
 {
     ssize_t got = pread(r->text->file, r->piece, sizeof r->piece, (off_t)r->at);

@@ -1,6 +1,6 @@
 /*
- * The text of a part program. Of a file only the piece being read is in memory, so its length does not matter; what
- * cannot be read twice, standard input or a pipe, is kept whole.
+ * The text of a part program. Of a file only the piece being read is in memory, so its length does
+ * not matter; what cannot be read twice, standard input or a pipe, is kept whole.
  */
 #ifndef TAKT_HOST_PROGRAM_TEXT_H
 #define TAKT_HOST_PROGRAM_TEXT_H
@@ -15,7 +15,10 @@
 
 #define PROGRAM_TEXT_PIECE 16384
 
-/* A file that the text consists of, as it is found. The first is the program, the others are subroutines. */
+/*
+ * A file that the text consists of, as it is found. The first is the program, the others are
+ * subroutines.
+ */
 struct program_piece {
     uint32_t first_line; /* of its lines in the text; its own count from 1 */
     char *name;          /* owned */
@@ -48,19 +51,25 @@ struct program_text_reader {
 
 /* Opens path, "-" for standard input. False after a message: it cannot be opened or read. */
 bool program_text_open(struct program_text *text, const char *path);
-/* A text that is in memory already; bytes are copied, name is not. False after a message: out of memory. */
+/*
+ * A text that is in memory already; bytes are copied, name is not. False after a message: out of
+ * memory.
+ */
 bool program_text_hold(struct program_text *text, const char *name, const char *bytes,
                        size_t length);
 void program_text_close(struct program_text *text);
 
 /*
- * A source that begins at the beginning. The reader is the caller's and must stay where it is. Reading ends in an error
- * when the file is changed meanwhile.
+ * A source that begins at the beginning. The reader is the caller's and must stay where it is.
+ * Reading ends in an error when the file is changed meanwhile.
  */
 void program_text_read(const struct program_text *text, struct program_text_reader *reader,
                        struct source *source);
 
-/* Up to size bytes of a line (from 1) after its first ones, without its end; returns how many there are. */
+/*
+ * Up to size bytes of a line (from 1) after its first ones, without its end; returns how many there
+ * are.
+ */
 size_t program_text_line(const struct program_text *text, uint32_t line, size_t first, char *bytes,
                          size_t size);
 

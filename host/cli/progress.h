@@ -16,8 +16,10 @@ struct progress {
 
 /* wanted: false for --quiet. */
 void progress_start(struct progress *p, bool wanted);
-/* done: 0 ... 1, and from it the time left. program_time_s: shown as a multiple of the time that has passed. Cheap: call it every some hundred
- * cycles. */
+/*
+ * done: 0 ... 1, and from it the time left. program_time_s: shown as a multiple of the time that
+ * has passed. Cheap: call it every some hundred cycles.
+ */
 void progress_show(struct progress *p, double done, double program_time_s);
 /* Wipes the bar out. */
 void progress_end(struct progress *p);

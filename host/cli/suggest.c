@@ -32,7 +32,10 @@ static void distance_row(unsigned row[], const unsigned up[], const unsigned up2
     }
 }
 
-/* Fills in the table of distances. Returns its last row: element j is the distance of a to the first j letters of b. */
+/*
+ * Fills in the table of distances. Returns its last row: element j is the distance of a to the
+ * first j letters of b.
+ */
 static const unsigned *distance_rows(unsigned rows[3][SUGGEST_WORD_MAX + 1], const char *a,
                                      const char *b)
 {

@@ -14,14 +14,19 @@ struct text {
     size_t length;
 };
 
-/* A text that is in memory, and the name it is read by in place of a path. Both are the caller's. */
+/*
+ * A text that is in memory, and the name it is read by in place of a path. Both are the caller's.
+ */
 struct text_held {
     char *name;
     char *bytes;
     size_t length;
 };
 
-/* From now on this thread finds texts by these names in memory instead of on disk; count 0: none. They must stay. */
+/*
+ * From now on this thread finds texts by these names in memory instead of on disk; count 0: none.
+ * They must stay.
+ */
 void text_hold(const struct text_held *held, unsigned count);
 /* NULL: it is a path. */
 const struct text_held *text_find_held(const char *name);
@@ -31,8 +36,8 @@ bool text_read(struct text *text, const char *path);
 void text_free(struct text *text);
 
 /*
- * Reads text line by line: true and the next line without its end ("\n" or "\r\n") while there is one.
- * *position starts at 0 and belongs to this function.
+ * Reads text line by line: true and the next line without its end ("\n" or "\r\n") while there is
+ * one. *position starts at 0 and belongs to this function.
  */
 bool text_next_line(const struct text *text, size_t *position, const char **line, size_t *length);
 

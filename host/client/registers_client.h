@@ -1,6 +1,6 @@
 /*
- * The host's port of hal/registers.h: a thread with libmodbus, so that whoever asks never waits. A line that is lost is
- * opened again, until it is there.
+ * The host's port of hal/registers.h: a thread with libmodbus, so that whoever asks never waits. A
+ * line that is lost is opened again, until it is there.
  */
 #ifndef TAKT_CLIENT_REGISTERS_CLIENT_H
 #define TAKT_CLIENT_REGISTERS_CLIENT_H

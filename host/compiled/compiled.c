@@ -197,7 +197,10 @@ enum command_status compiled_make(const struct session *s, const struct session_
                                   uint32_t ceiling_percent, FILE *stream,
                                   struct compiled_figures *figures)
 {
-    /* What the verifier refuses is made with less of the tolerance, then on the exact path, at last with a stop at each junction. */
+    /*
+     * What the verifier refuses is made with less of the tolerance, then on the exact path, at last
+     * with a stop at each junction.
+     */
     static const struct attempt attempts[] = {
         {1, false}, {0.8, false}, {0.4, false}, {0, false}, {0, true}};
     const uint64_t start_ns = stopwatch_now_ns();

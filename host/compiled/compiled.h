@@ -1,5 +1,6 @@
 /*
- * Compiled programs: planned ahead of the run (room ahead), verified, kept in a file, replayed (room replay).
+ * Compiled programs: planned ahead of the run (room ahead), verified, kept in a file, replayed
+ * (room replay).
  */
 #ifndef TAKT_HOST_COMPILED_H
 #define TAKT_HOST_COMPILED_H
@@ -37,8 +38,8 @@ struct compiled_figures {
 bool compiled_read_ceiling(const struct options *options, uint32_t *percent);
 
 /*
- * Compiles the session's program into an open file, and verifies what is there: STATUS_DONE; else after a message. What is
- * in the file then is worth nothing.
+ * Compiles the session's program into an open file, and verifies what is there: STATUS_DONE; else
+ * after a message. What is in the file then is worth nothing.
  */
 enum command_status compiled_make(const struct session *s, const struct session_totals *totals,
                                   uint32_t ceiling_percent, FILE *stream,
@@ -52,8 +53,8 @@ struct compiled {
 };
 
 /*
- * The session's program as compiled in the file at path, or, with path NULL, compiled now. STATUS_DONE; else after a
- * message: it was compiled for something else, or is damaged.
+ * The session's program as compiled in the file at path, or, with path NULL, compiled now.
+ * STATUS_DONE; else after a message: it was compiled for something else, or is damaged.
  */
 enum command_status compiled_open(struct compiled *c, const struct session *s,
                                   const struct session_totals *totals, const char *path);

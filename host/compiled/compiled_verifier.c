@@ -29,7 +29,10 @@
 /* Text of what one planner does. */
 #define SHARES_MAX 160
 
-/* Replayed a second time at this rate, so that the curve is seen between the setpoints of the first. */
+/*
+ * Replayed a second time at this rate, so that the curve is seen between the setpoints of the
+ * first.
+ */
 #define SLOW_RATE 0.23
 
 struct trial {
@@ -59,7 +62,10 @@ static size_t read_stream(void *context, uint8_t *bytes, size_t size)
     return fread(bytes, 1, size, context);
 }
 
-/* What the caller may tell: the motion, of a line of the program if it is not 0, is not to be written. */
+/*
+ * What the caller may tell: the motion, of a line of the program if it is not 0, is not to be
+ * written.
+ */
 __attribute__((format(printf, 3, 4))) static void refuse(struct trial *t, uint32_t line,
                                                          const char *why, ...)
 {

@@ -1,5 +1,6 @@
 /*
- * What would let a bus carry the cycle of a machine: what has been tried by the same prediction that refuses it.
+ * What would let a bus carry the cycle of a machine: what has been tried by the same prediction
+ * that refuses it.
  */
 #ifndef TAKT_HOST_BUS_ADVICE_H
 #define TAKT_HOST_BUS_ADVICE_H

@@ -1,6 +1,6 @@
 /*
- * Concise configurations (CiA 302-3, object 1F22) of a machine's drives, as generators of CANopen masters write them: binary
- * files, named by dcf in [drive N].
+ * Concise configurations (CiA 302-3, object 1F22) of a machine's drives, as generators of CANopen
+ * masters write them: binary files, named by dcf in [drive N].
  */
 #ifndef TAKT_HOST_CONFIGURATION_FILE_H
 #define TAKT_HOST_CONFIGURATION_FILE_H

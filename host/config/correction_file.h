@@ -11,8 +11,9 @@
 #include <stdbool.h>
 
 /*
- * Reads the tables that the machine file names into *tables: allocated, NULL when it names none, freed with free(). Also
- * refuses a machine whose correction would take more than CORRECTION_SHARE_MAX of an axis. False after a message.
+ * Reads the tables that the machine file names into *tables: allocated, NULL when it names none,
+ * freed with free(). Also refuses a machine whose correction would take more than
+ * CORRECTION_SHARE_MAX of an axis. False after a message.
  */
 bool correction_file_load(struct correction_tables **tables, const struct machine_setup *setup);
 
@@ -23,7 +24,9 @@ bool correction_file_read(struct table *table, const char *path, const struct ma
 bool correction_file_read_triplets(struct table *table, const char *path, enum axis axis,
                                    unsigned type, const struct machine *machine);
 
-/* Writes a table as CSV, with a comment of one line. False after a message; nothing is left then. */
+/*
+ * Writes a table as CSV, with a comment of one line. False after a message; nothing is left then.
+ */
 bool correction_file_write(const struct table *table, const char *path, const char *comment);
 
 #endif

@@ -65,8 +65,10 @@ static void forget_default_axes(struct machine_reader *r)
     r->axes_named = true;
 }
 
-/* inih tells of a section with its first key only; an axis without keys has the default ones all the same. False: the
- * line is no section, as has been reported. */
+/*
+ * inih tells of a section with its first key only; an axis without keys has the default ones all
+ * the same. False: the line is no section, as has been reported.
+ */
 static bool reader_enter_section(struct machine_reader *r, size_t offset)
 {
     char section[MACHINE_FILE_WORD_MAX + 1], word[MACHINE_FILE_WORD_MAX + 1],
@@ -103,8 +105,8 @@ static bool is_plain(const char *line, size_t length)
 }
 
 /*
- * fgets for inih: the next line, without leading spaces, because inih takes an indented line as the continuation of
- * the value before.
+ * fgets for inih: the next line, without leading spaces, because inih takes an indented line as the
+ * continuation of the value before.
  */
 static char *reader_next_line(char *buffer, int size, void *context)
 {

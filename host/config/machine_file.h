@@ -11,15 +11,21 @@
 #include <stdio.h>
 
 /*
- * Reads a machine file over *setup, which holds the built-in machine. A file that names an axis has the axes it names
- * and no others. False after messages, one for every error.
+ * Reads a machine file over *setup, which holds the built-in machine. A file that names an axis has
+ * the axes it names and no others. False after messages, one for every error.
  */
 bool machine_file_read(struct machine_setup *setup, const char *path);
 
-/* Applies "section.key=value" or "section.instance.key=value" as --set gives it. False after a message. */
+/*
+ * Applies "section.key=value" or "section.instance.key=value" as --set gives it. False after a
+ * message.
+ */
 bool machine_file_assign(struct machine_setup *setup, const char *assignment);
 
-/* The machine a command is to use: built in, file, --set in their order, checked as a whole. False after messages. */
+/*
+ * The machine a command is to use: built in, file, --set in their order, checked as a whole. False
+ * after messages.
+ */
 bool machine_file_load(struct machine_setup *setup, const struct options *options);
 
 /* Writes a complete, commented machine file that reads as *setup. */

@@ -11,7 +11,10 @@
 #define IN_GANTRY(field)  offsetof(struct machine_gantry, field)
 #define IN_STEPPER(field) offsetof(struct virtual_stepper_config, field)
 
-/* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
+/*
+ * Rows of the table by what they hold. Ranges: from (above: without) the first number to the
+ * second.
+ */
 #define TEXT(section, name, offset, size, meaning)                                                 \
     {                                                                                              \
         section, name, KEY_TEXT, SCALE_NONE, offset, size, 0, 0, false, meaning, NULL              \

@@ -1,5 +1,6 @@
 /*
- * The keys of machine files: one table that reads them, checks them, prints them and documents them.
+ * The keys of machine files: one table that reads them, checks them, prints them and documents
+ * them.
  */
 #ifndef TAKT_HOST_MACHINE_KEYS_H
 #define TAKT_HOST_MACHINE_KEYS_H
@@ -41,7 +42,10 @@ enum machine_key_type {
     KEY_AXIS_TYPE
 };
 
-/* How a value in a file becomes one of the setup for a rotary axis, whose keys end in _deg instead of _mm. */
+/*
+ * How a value in a file becomes one of the setup for a rotary axis, whose keys end in _deg instead
+ * of _mm.
+ */
 enum machine_key_scale {
     SCALE_NONE,
     SCALE_LENGTH,
@@ -57,8 +61,11 @@ struct machine_key {
     const char *name; /* of a linear axis */
     enum machine_key_type type;
     enum machine_key_scale scale;
-    size_t
-        offset; /* SECTION_AXIS: in struct machine_axis; SECTION_DRIVE: in the drive; SECTION_STEPPER: in the stepper; SECTION_IO: in the I/O node; else in the setup */
+    /*
+     * SECTION_AXIS: in struct machine_axis; SECTION_DRIVE: in the drive; SECTION_STEPPER: in the
+     * stepper; SECTION_IO: in the I/O node; else in the setup
+     */
+    size_t offset;
     size_t size;     /* of a text, with its zero */
     double min, max; /* in the unit of the file */
     bool above_min;  /* min itself is not allowed */
@@ -75,7 +82,10 @@ extern const struct machine_key machine_keys[];
 extern const size_t machine_keys_count;
 extern const char *const machine_section_names[SECTION_COUNT];
 
-/* A section in use. index: the axis, also of a drive or stepper; of an I/O node its number from 0; 0 for sections there is one of. */
+/*
+ * A section in use. index: the axis, also of a drive or stepper; of an I/O node its number from 0;
+ * 0 for sections there is one of.
+ */
 struct machine_place {
     enum machine_section section;
     unsigned index;
@@ -95,8 +105,9 @@ __attribute__((format(printf, 2, 3))) void machine_problem_say(struct machine_pr
 bool machine_place_is_rotary(const struct machine_setup *setup, struct machine_place place);
 
 /*
- * Finds a section: word "axis", instance "X"; word "drive", instance "1" (a node some axis has); else the word alone,
- * instance "". An axis comes into being by being named. False: *wrong says why.
+ * Finds a section: word "axis", instance "X"; word "drive", instance "1" (a node some axis has);
+ * else the word alone, instance "". An axis comes into being by being named. False: *wrong says
+ * why.
  */
 bool machine_section_find(struct machine_setup *setup, const char *word, const char *instance,
                           struct machine_place *place, struct machine_problem *wrong);

@@ -1,5 +1,6 @@
 /*
- * Settings of a target as a file: the machine and its correction tables, as storage/settings.h packs them.
+ * Settings of a target as a file: the machine and its correction tables, as storage/settings.h
+ * packs them.
  */
 #ifndef TAKT_HOST_MACHINE_PACK_H
 #define TAKT_HOST_MACHINE_PACK_H
@@ -8,8 +9,9 @@
 #include "config/machine_setup.h"
 
 /*
- * Writes the settings of a machine file. is_sector: with the head that a target's flash sector begins with, so that the
- * file can be flashed. STATUS_DONE after a line of what it holds (not if it goes to standard output), else a message.
+ * Writes the settings of a machine file. is_sector: with the head that a target's flash sector
+ * begins with, so that the file can be flashed. STATUS_DONE after a line of what it holds (not if
+ * it goes to standard output), else a message.
  */
 enum command_status machine_pack_write(const struct machine_setup *setup, const char *path,
                                        bool is_sector);

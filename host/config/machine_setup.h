@@ -39,7 +39,10 @@ struct machine_drive {
 #define MACHINE_SECOND_DRIVE     AXIS_COUNT
 #define MACHINE_SETUP_DRIVES_MAX (AXIS_COUNT + MACHINE_GANTRIES_MAX)
 
-/* What the controller is told of its machine's geometry (correction/geometry.h), beside the errors of units. */
+/*
+ * What the controller is told of its machine's geometry (correction/geometry.h), beside the errors
+ * of units.
+ */
 struct geometry_setup {
     double tool_mm[AXIS_LINEAR_COUNT];
     double centre_mm[AXIS_LINEAR_COUNT];
@@ -71,8 +74,8 @@ struct machine_setup {
 void machine_setup_set_default(struct machine_setup *setup);
 
 /*
- * What single values cannot show: order of travel ends, nodes used twice, positions beyond 32 bits, a bus that cannot
- * carry the cycle. NULL: good; else what is wrong, valid until the next call.
+ * What single values cannot show: order of travel ends, nodes used twice, positions beyond 32 bits,
+ * a bus that cannot carry the cycle. NULL: good; else what is wrong, valid until the next call.
  */
 const char *machine_setup_check(const struct machine_setup *setup);
 

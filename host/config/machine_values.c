@@ -195,8 +195,8 @@ static bool read_vector(const struct value_place *at, void *field, const char *v
 }
 
 /*
- * The shortest decimal number that, read and scaled, gives the same bits; the nearest if rounding lets none. No
- * exponent for numbers people read without one.
+ * The shortest decimal number that, read and scaled, gives the same bits; the nearest if rounding
+ * lets none. No exponent for numbers people read without one.
  */
 static void write_scaled(double value, double scale, char *text, size_t size)
 {

@@ -1,5 +1,6 @@
 /*
- * What the controller does so that a machine's modes (geometry.mode_x) do not swing: see firmware/shape.
+ * What the controller does so that a machine's modes (geometry.mode_x) do not swing: see
+ * firmware/shape.
  */
 #ifndef TAKT_HOST_CONFIG_SHAPER_H
 #define TAKT_HOST_CONFIG_SHAPER_H
@@ -23,8 +24,8 @@ const char *shaper_check(const struct machine_setup *setup);
 struct shape *shaper_prepare(const struct machine_setup *setup, struct shape *s);
 
 /*
- * The modes that a program planned ahead meets: as they are at their places' ratio of 1, each along its own axis. None where setpoints
- * are shaped: then that is the shaper's.
+ * The modes that a program planned ahead meets: as they are at their places' ratio of 1, each along
+ * its own axis. None where setpoints are shaped: then that is the shaper's.
  */
 void shaper_planned_modes(const struct machine_setup *setup, struct vibration_config *modes);
 

@@ -10,7 +10,10 @@ struct term {
 
 #define TERMS_MAX (2 * PROBLEM_REACH_MAX)
 
-/* Coordinate `which` of point j as a sum of terms; their number is returned. Time is what it is at the point itself. */
+/*
+ * Coordinate `which` of point j as a sum of terms; their number is returned. Time is what it is at
+ * the point itself.
+ */
 static size_t terms_of(const struct problem *p, const struct problem_side *side, size_t j,
                        size_t which, struct term *term)
 {

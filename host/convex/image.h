@@ -1,6 +1,6 @@
 /*
- * A cell's rows (rows.h) in its unknowns x, changes of the curve w and of time. Without modes these are what the
- * rows are on; else
+ * A cell's rows (rows.h) in its unknowns x, changes of the curve w and of time. Without modes these
+ * are what the rows are on; else
  *
  *     change of the motors' or the tool's point j = sum_k (by_curve_k dw_(j+k) + by_time_k e_(j+k)),   k = 0 ... 2 modes
  *
@@ -33,8 +33,8 @@ void image_normal(const struct problem *p, size_t cell, const struct rows_at *z,
                   const double w[ROWS_MAX], const double m[ROWS_MAX], double *k);
 
 /*
- * Stray tools swing as their rows say, to within what 1 / weight lets them: the squares of these rows, times weight, are
- * added to the lower triangle of k, and what they ask for at x to b.
+ * Stray tools swing as their rows say, to within what 1 / weight lets them: the squares of these
+ * rows, times weight, are added to the lower triangle of k, and what they ask for at x to b.
  */
 void image_swing(const struct problem *p, size_t cell, const double *x, double weight, double *k,
                  double *b);

@@ -21,17 +21,24 @@
 /* Part of the way to the bound that a step goes at most. */
 #define STEP_PART 0.99
 
-/* Second derivative of the time by e; and what keeps changes of the curve small where nothing else does. */
+/*
+ * Second derivative of the time by e; and what keeps changes of the curve small where nothing else
+ * does.
+ */
 #define TIME_SQUARE 0.75
 #define MOVE_SQUARE 0.03
 #define STAY_SQUARE 1e9
 
-/* Price of half the square of what the swing of a stray tool is not what follows from the curve, in a knot, in tolerances. */
+/*
+ * Price of half the square of what the swing of a stray tool is not what follows from the curve, in
+ * a knot, in tolerances.
+ */
 #define SWING_SQUARE 1e6
 
 /*
- * Price of half the square of e's second difference: a change of time that trembles from knot to knot and a change of the
- * curve along itself that undoes it would cost nothing else, and are not what their first order says.
+ * Price of half the square of e's second difference: a change of time that trembles from knot to
+ * knot and a change of the curve along itself that undoes it would cost nothing else, and are not
+ * what their first order says.
  */
 #define SMOOTH_SQUARE 300.0
 
@@ -284,7 +291,10 @@ static void assemble(struct interior *w)
     band_factor(w->band, w->width, w->each * w->free);
 }
 
-/* What the products of a row should change by; a second step takes the first one's product into account. */
+/*
+ * What the products of a row should change by; a second step takes the first one's product into
+ * account.
+ */
 static void targets(const struct row *row, double mu, bool again, double *with_s, double *with_t)
 {
     const double extra_s = again ? row->ds * row->dm : 0;
@@ -420,7 +430,10 @@ static bool has_direction(const struct interior *w)
     return maths_is_finite(sum);
 }
 
-/* Mehrotra's centring: the cube of what a step straight to the end would leave. False: it cannot be taken. */
+/*
+ * Mehrotra's centring: the cube of what a step straight to the end would leave. False: it cannot be
+ * taken.
+ */
 static bool iterate(struct interior *w, double mu)
 {
     double primal;

@@ -5,8 +5,9 @@
  *
  *     c(z) + t = s,   s, t >= 0,   s m = mu,   t (PRICE - m) = mu
  *
- * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of problem_each unknowns a knot, as
- * wide as the unknowns of one cell. How stray tools swing is no row but squares in that matrix, of a high price.
+ * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of
+ * problem_each unknowns a knot, as wide as the unknowns of one cell. How stray tools swing is no
+ * row but squares in that matrix, of a high price.
  */
 #ifndef TAKT_HOST_CONVEX_INTERIOR_H
 #define TAKT_HOST_CONVEX_INTERIOR_H
@@ -22,8 +23,8 @@ struct interior *interior_new(size_t cells_max, unsigned modes, unsigned strays)
 void interior_free(struct interior *w);
 
 /*
- * The change (d, e) of control points problem_ends ... cells - 1, finite whatever the problem is; valid until
- * the next call.
+ * The change (d, e) of control points problem_ends ... cells - 1, finite whatever the problem is;
+ * valid until the next call.
  */
 double (*interior_solve(struct interior *w, const struct problem *p))[4];
 

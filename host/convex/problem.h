@@ -1,23 +1,24 @@
 /*
  * A convex problem in changes of a curve's control points and of its time.
  *
- * The curve is q(u), u in knots. Unknown are a change d(u) of the curve and y(u) = 1 + e(u), the square of the
- * rate at which it is passed, both cubic B-splines on the same knots; the first and last three coefficients are 0. Then
- * (warp of time, exact in e; products of d and e left out)
+ * The curve is q(u), u in knots. Unknown are a change d(u) of the curve and y(u) = 1 + e(u), the
+ * square of the rate at which it is passed, both cubic B-splines on the same knots; the first and
+ * last three coefficients are 0. Then (warp of time, exact in e; products of d and e left out)
  *
  *     velocity      |q' + d' + q' e / 2|                                <= V
  *     acceleration  |q" + d" + q" e + q' e' / 2|                        <= A
  *     jerk          |q"' + d"' + q"' e + 3/2 q" e' + q' e" / 2| + J e/2 <= J
  *     tube          |N (q + d - closest point)|                                  <= P
  *
- * and the time is sum (1 - e / 2 + 3/8 e^2). The bound of jerk is the tangent of J / sqrt(y), which is convex, so that a
- * change of time alone never leads beyond the limits. Every row may be broken at a price, so that there is a solution
- * from wherever the trajectory is.
+ * and the time is sum (1 - e / 2 + 3/8 e^2). The bound of jerk is the tangent of J / sqrt(y), which
+ * is convex, so that a change of time alone never leads beyond the limits. Every row may be broken
+ * at a price, so that there is a solution from wherever the trajectory is.
  *
- * The rows may also be on two images of the curve w that is changed, each with other weights: q + d is then that of the
- * motors in the rows of velocity, acceleration and jerk, and that of the tool in those of the tube, with d linear in the
- * changes of w and of time (image.h). An image's point j follows from the points j ... j + 2 modes of w. And a tool may
- * stray: up to two more curves have balls of their own, and follow from the motors' by a row an axis (problem_swing).
+ * The rows may also be on two images of the curve w that is changed, each with other weights: q + d
+ * is then that of the motors in the rows of velocity, acceleration and jerk, and that of the tool
+ * in those of the tube, with d linear in the changes of w and of time (image.h). An image's point j
+ * follows from the points j ... j + 2 modes of w. And a tool may stray: up to two more curves have
+ * balls of their own, and follow from the motors' by a row an axis (problem_swing).
  */
 #ifndef TAKT_HOST_CONVEX_PROBLEM_H
 #define TAKT_HOST_CONVEX_PROBLEM_H
@@ -40,7 +41,10 @@ enum problem_form { FORM_VELOCITY, FORM_ACCELERATION, FORM_JERK, FORM_COUNT };
 /* Of a stray tool likewise. */
 #define STRAY_BALLS 4
 
-/* |N (offset + sum_k weight_k d_k)| <= radius, N = 1 - along along^T; along = 0: a ball about a corner. */
+/*
+ * |N (offset + sum_k weight_k d_k)| <= radius, N = 1 - along along^T; along = 0: a ball about a
+ * corner.
+ */
 struct problem_ball {
     double weight[4];
     double offset[3];
@@ -57,7 +61,10 @@ struct problem_cell {
     struct problem_ball ball[CELL_BALLS];
 };
 
-/* How the four control points of motors or tool change with the curve's and with e's: point, axis, of which. */
+/*
+ * How the four control points of motors or tool change with the curve's and with e's: point, axis,
+ * of which.
+ */
 struct problem_side {
     double by_curve[4][3][PROBLEM_REACH_MAX];
     double by_time[4][3][PROBLEM_REACH_MAX];
@@ -101,8 +108,9 @@ static inline size_t problem_ends(const struct problem *p)
 }
 
 /*
- * Unknowns of one control point: x, y, z of w, e, and x, y, z of each stray tool. What a tool does goes with points of w
- * before it: its point j is kept with point j + 2 modes of w, the last that it goes with.
+ * Unknowns of one control point: x, y, z of w, e, and x, y, z of each stray tool. What a tool does
+ * goes with points of w before it: its point j is kept with point j + 2 modes of w, the last that
+ * it goes with.
  */
 static inline size_t problem_each(const struct problem *p)
 {

@@ -24,8 +24,9 @@ static inline int rows_count(const struct problem *p)
 #define CELL_UNKNOWNS 16
 
 /*
- * Limits and bounds of time are on the motors' control points, the tolerance on the tool's: without modes both are the
- * same, in one place, and so are what is added up below. The tool's e is not used.
+ * Limits and bounds of time are on the motors' control points, the tolerance on the tool's: without
+ * modes both are the same, in one place, and so are what is added up below. The tool's e is not
+ * used.
  */
 struct rows_at {
     const double *motor, *tool; /* CELL_UNKNOWNS each */

@@ -203,7 +203,10 @@ static void begin_execution(struct offline *o, uint32_t line)
     find_raw(o, &o->current);
 }
 
-/* A line that has been done, just before the next one is read, may have taken over where the machine stands. */
+/*
+ * A line that has been done, just before the next one is read, may have taken over where the
+ * machine stands.
+ */
 static void see_setting(struct offline *o)
 {
     if (o->reading == 0 || !begins_line(o) || !offline_is_setting(&o->program))
@@ -264,8 +267,8 @@ static struct usage *count_usage(const struct offline *o, uint32_t lines)
 }
 
 /*
- * A line in a loop or a subroutine is at another place each time: a counter of all such executions, a parameter, says
- * which of its forms is due.
+ * A line in a loop or a subroutine is at another place each time: a counter of all such executions,
+ * a parameter, says which of its forms is due.
  */
 static void write_forms(const struct offline *o, const struct usage *usage, uint32_t line)
 {

@@ -1,7 +1,8 @@
 /*
- * Correction of a program instead of a motion, for machines without a direct channel: a program in, a corrected program
- * out. Each motion's words are replaced; a long line in a curved field of errors, or an arc, becomes several. Everything
- * else stays as it is: comments, feeds, modes, line numbers, subroutines.
+ * Correction of a program instead of a motion, for machines without a direct channel: a program in,
+ * a corrected program out. Each motion's words are replaced; a long line in a curved field of
+ * errors, or an arc, becomes several. Everything else stays as it is: comments, feeds, modes, line
+ * numbers, subroutines.
  */
 #ifndef TAKT_HOST_OFFLINE_H
 #define TAKT_HOST_OFFLINE_H

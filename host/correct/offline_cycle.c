@@ -1,6 +1,6 @@
 /*
- * Cycles, written out: a hole may lean, and a thread be longer than programmed. What a cycle does between its motions is
- * written too: the spindle, waits, stops.
+ * Cycles, written out: a hole may lean, and a thread be longer than programmed. What a cycle does
+ * between its motions is written too: the spindle, waits, stops.
  */
 #include "base/maths.h"
 #include "correct/offline_private.h"

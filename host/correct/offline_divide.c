@@ -1,8 +1,8 @@
 /*
  * How a motion is divided, so that its pieces follow the corrected path.
  *
- * Arcs: each piece is the circle through three corrected points. Involutes: what maps both ends of a piece z to where they
- * are corrected to, w, and keeps shapes, is
+ * Arcs: each piece is the circle through three corrected points. Involutes: what maps both ends of
+ * a piece z to where they are corrected to, w, and keeps shapes, is
  *
  *     z -> a z + b,   a = (w1 - w0) / (z1 - z0),   b = w0 - a z0      (complex numbers of the plane)
  *
@@ -12,7 +12,9 @@
 #include "correct/offline_private.h"
 #include "geometry/involute.h"
 
-/* Words have six decimals: what is written is this far from what was meant, at most, in each axis. */
+/*
+ * Words have six decimals: what is written is this far from what was meant, at most, in each axis.
+ */
 #define WRITTEN_STEPS_PER_MM 1e6
 
 /* Up to this many of them are no change of a length. */
@@ -28,8 +30,9 @@
 #define INVOLUTE_CLOSED_MM 4e-6
 
 /*
- * A piece is compared with the corrected path at this many places, less one. Between them it may be a little farther
- * off: of a parabola nothing, of a cubic of the same three points 0.4 % of the largest distance.
+ * A piece is compared with the corrected path at this many places, less one. Between them it may be
+ * a little farther off: of a parabola nothing, of a cubic of the same three points 0.4 % of the
+ * largest distance.
  */
 #define SAMPLES      8
 #define BETWEEN_PART 0.98
@@ -39,7 +42,10 @@ static bool is_curved(const struct move *move)
     return move_is_arc(move) || move_is_involute(move);
 }
 
-/* As it will be read: rounded to what is written. Rotary axes are written in degrees, finely enough. */
+/*
+ * As it will be read: rounded to what is written. Rotary axes are written in degrees, finely
+ * enough.
+ */
 static double round_to_written(double mm)
 {
     return takt_maths_round(mm * WRITTEN_STEPS_PER_MM) / WRITTEN_STEPS_PER_MM;
@@ -85,7 +91,8 @@ static void point_of(const struct curve *c, double part, struct point *at)
 }
 
 /*
- * The circle through three points a, m, b of a plane, by the perpendicular bisectors; relative to a:
+ * The circle through three points a, m, b of a plane, by the perpendicular bisectors; relative to
+ * a:
  *
  *     2 (m - a) . c = |m - a|^2,   2 (b - a) . c = |b - a|^2
  */
@@ -137,7 +144,10 @@ static void point_in(const struct part *p, double part, struct point *at)
     point_of(p->c, (p->k + part) / p->n, at);
 }
 
-/* Where the written path is to be: from the start of the first piece it is led onto the corrected path. */
+/*
+ * Where the written path is to be: from the start of the first piece it is led onto the corrected
+ * path.
+ */
 static void wanted_in(struct offline_rewriter *r, const struct part *p, double part,
                       struct point *wanted)
 {
@@ -209,7 +219,10 @@ static bool curve_of(const struct move *move, const struct point *from,
     return has_centre(piece) && takt_move_curve(&written, from, c);
 }
 
-/* Largest distance of a piece from the corrected path, compared at equal parts of both: no less than the true one. */
+/*
+ * Largest distance of a piece from the corrected path, compared at equal parts of both: no less
+ * than the true one.
+ */
 static double error_of(struct offline_rewriter *r, const struct part *p,
                        const struct offline_piece *piece)
 {
@@ -317,7 +330,9 @@ static bool can_be_read(const struct offline_rewriter *r, const struct move *mov
     return true;
 }
 
-/* As curves of their kind, or as lines. Returns how many pieces; 0: they do not keep the tolerance. */
+/*
+ * As curves of their kind, or as lines. Returns how many pieces; 0: they do not keep the tolerance.
+ */
 static unsigned divide_as(struct offline_rewriter *r, const struct move *move,
                           const struct curve *c, bool straight, struct offline_piece *pieces)
 {

@@ -131,8 +131,8 @@ void offline_print_stop(const struct offline_line *line, struct offline_text *te
 /* ---- the forms of lines ---- */
 
 /*
- * The line's own code stays if it is the right one. A line without a code gets one where what has been written before it
- * has left another one in effect.
+ * The line's own code stays if it is the right one. A line without a code gets one where what has
+ * been written before it has left another one in effect.
  */
 static void print_code(struct offline_rewriter *r, const struct offline_line *line,
                        const char *code, struct offline_cuts *cuts, struct offline_text *words)
@@ -147,7 +147,10 @@ static void print_code(struct offline_rewriter *r, const struct offline_line *li
     r->code = code;
 }
 
-/* One motion: a line, an arc, an involute, a thread. G33.1 has two, the way back being that of the way in. */
+/*
+ * One motion: a line, an arc, an involute, a thread. G33.1 has two, the way back being that of the
+ * way in.
+ */
 static bool rewrite_motion(struct offline_rewriter *r, const struct offline_line *line,
                            struct offline_piece *pieces, struct offline_text *text)
 {

@@ -49,7 +49,10 @@ struct offline_rewriter {
     uint32_t wrong_line;
 };
 
-/* The text that takes the place of the line, without the end of its last line. False: r->wrong is set. */
+/*
+ * The text that takes the place of the line, without the end of its last line. False: r->wrong is
+ * set.
+ */
 bool offline_rewrite_line(struct offline_rewriter *r, const struct offline_line *line,
                           struct offline_text *text);
 
@@ -92,7 +95,9 @@ bool offline_rewrite_cycle(struct offline_rewriter *r, const struct offline_line
 /* The stop at the end of the line (M0, M1, M2, M98 ...), to be put on a text line of its own. */
 void offline_cut_stop(struct offline_cuts *cuts, const struct offline_line *line);
 void offline_print_stop(const struct offline_line *line, struct offline_text *text);
-/* A motion that stands alone: "\n" and code and words of each piece, from the first one given on. */
+/*
+ * A motion that stands alone: "\n" and code and words of each piece, from the first one given on.
+ */
 void offline_print_pieces(struct offline_rewriter *r, const struct offline_line *line,
                           const struct move *move, const struct offline_piece *pieces,
                           unsigned first, unsigned n, struct offline_text *text);
@@ -109,8 +114,9 @@ struct offline_piece {
 };
 
 /*
- * Divides a motion into pieces that keep the tolerance. Returns how many; 0: r->wrong is set. Threads stay whole, since a
- * controller begins each of their blocks anew; r->totals tells how far that leads off.
+ * Divides a motion into pieces that keep the tolerance. Returns how many; 0: r->wrong is set.
+ * Threads stay whole, since a controller begins each of their blocks anew; r->totals tells how far
+ * that leads off.
  */
 unsigned offline_divide(struct offline_rewriter *r, const struct move *move,
                         struct offline_piece pieces[OFFLINE_PIECES_MAX]);
@@ -119,7 +125,9 @@ unsigned offline_divide(struct offline_rewriter *r, const struct move *move,
 void offline_print_setting(const struct offline_rewriter *r, const struct offline_line *line,
                            struct offline_text *text);
 
-/* " X1.5 Y2 ..." for a piece that begins at r->written, which becomes its end as it will be read. */
+/*
+ * " X1.5 Y2 ..." for a piece that begins at r->written, which becomes its end as it will be read.
+ */
 void offline_print_words(struct offline_rewriter *r, const struct offline_line *line,
                          const struct move *move, const struct offline_piece *piece,
                          struct offline_text *text);

@@ -102,7 +102,8 @@ static void to_machine(const struct offline_line *line, const struct point *valu
 }
 
 /*
- * Rotary axes are left alone, unless the line turns them or correction does. What G28 does not name stays where it is.
+ * Rotary axes are left alone, unless the line turns them or correction does. What G28 does not name
+ * stays where it is.
  */
 static bool is_written(const struct offline_rewriter *r, const struct offline_line *line,
                        const struct offline_piece *piece, unsigned axis)
@@ -139,7 +140,10 @@ static void print_centre(const struct offline_line *line, const struct offline_r
     }
 }
 
-/* The words of the end; returns it as it will be read: what incremental words are rounded by must not add up. */
+/*
+ * The words of the end; returns it as it will be read: what incremental words are rounded by must
+ * not add up.
+ */
 static struct point print_end(const struct offline_rewriter *r, const struct offline_line *line,
                               const struct offline_piece *piece, struct offline_text *text)
 {

@@ -135,7 +135,10 @@ static void travel(const struct deviation *d, unsigned axis, double x, double v[
     }
 }
 
-/* A unit that carries the tool: v, seen from it, becomes v = R v + travel + shifts, seen from what it stands on. */
+/*
+ * A unit that carries the tool: v, seen from it, becomes v = R v + travel + shifts, seen from what
+ * it stands on.
+ */
 static void carry_tool(const struct deviation *d, unsigned axis, double drive_mm, double v[N])
 {
     double e[DEVIATION_OF_AXIS];
@@ -157,7 +160,10 @@ static void take_back(double e[DEVIATION_OF_AXIS], double v[N])
     turn_slightly(e + N, v);
 }
 
-/* A unit that carries the part: v, seen from what it stands on, is seen from it. It goes against its axis. */
+/*
+ * A unit that carries the part: v, seen from what it stands on, is seen from it. It goes against
+ * its axis.
+ */
 static void enter_part(const struct deviation *d, unsigned axis, double drive_mm, double v[N])
 {
     double e[DEVIATION_OF_AXIS];

@@ -1,10 +1,12 @@
 /*
- * The machine as it really is: where the tool's point comes to when the drives stand where they stand.
+ * The machine as it really is: where the tool's point comes to when the drives stand where they
+ * stand.
  *
- * Three linear axes and a turning table, if there is one, stand on one another as the chain says. Each of them has the six
- * errors of a rigid body that is guided (ISO 230-1: E_XX ... E_CX), and there are three squarenesses: 21 errors of the
- * linear axes, as functions of position. Besides: growth with temperature, backlash, the yaw of the table, and wear of the
- * tool. Nothing of this is known to the controller.
+ * Three linear axes and a turning table, if there is one, stand on one another as the chain says.
+ * Each of them has the six errors of a rigid body that is guided (ISO 230-1: E_XX ... E_CX), and
+ * there are three squarenesses: 21 errors of the linear axes, as functions of position. Besides:
+ * growth with temperature, backlash, the yaw of the table, and wear of the tool. Nothing of this is
+ * known to the controller.
  */
 #ifndef TAKT_DEVIATION_DEVIATION_H
 #define TAKT_DEVIATION_DEVIATION_H
@@ -75,15 +77,17 @@ void deviation_set_wear(struct deviation *d, double length_mm, double time_s);
 double deviation_sensor_k(const struct deviation *d);
 
 /*
- * Where the tool's point is when the drives stand there, X Y Z mm. With a turning table: where on the part it is, given as
- * the place a perfect machine would be sent to for it, with its table at turn_rad.
+ * Where the tool's point is when the drives stand there, X Y Z mm. With a turning table: where on
+ * the part it is, given as the place a perfect machine would be sent to for it, with its table at
+ * turn_rad.
  */
 void deviation_tool_point(const struct deviation *d, const struct point *drives, double turn_rad,
                           struct point *tool);
 
 /*
- * The six errors of a unit as an instrument finds them that looks at this unit alone: how far it is from its place (mm)
- * and direction (rad), in machine axes, when it is wanted at at_mm. Squareness, play and growth are among its shifts.
+ * The six errors of a unit as an instrument finds them that looks at this unit alone: how far it is
+ * from its place (mm) and direction (rad), in machine axes, when it is wanted at at_mm. Squareness,
+ * play and growth are among its shifts.
  */
 void deviation_unit(const struct deviation *d, unsigned axis, const struct point *drives,
                     double at_mm, double errors[DEVIATION_OF_AXIS]);

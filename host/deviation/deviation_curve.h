@@ -5,8 +5,9 @@
 #define TAKT_DEVIATION_DEVIATION_CURVE_H
 
 /*
- * e(x) = linear x + bow ((x - middle) / half)^2 + sine sin(2 pi x / wavelength + phase), less its value at 0: machine zero
- * is where the machine was set up. Units as in a machine file: um and um/m, or urad and urad/m.
+ * e(x) = linear x + bow ((x - middle) / half)^2 + sine sin(2 pi x / wavelength + phase), less its
+ * value at 0: machine zero is where the machine was set up. Units as in a machine file: um and
+ * um/m, or urad and urad/m.
  */
 enum {
     DEVIATION_LINEAR_PER_M,

@@ -1,5 +1,6 @@
 /*
- * An arc of a lathe of Fanuc without I, K and R is a straight line (parameter 3403, bit CIR), and the arcs go on behind it:
+ * An arc of a lathe of Fanuc without I, K and R is a straight line (parameter 3403, bit CIR), and
+ * the arcs go on behind it:
  *
  *     G2 X20 Z-5 R5        G2 X20 Z-5 R5
  *     Z-9                  Z-9 G1

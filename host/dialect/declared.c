@@ -10,7 +10,8 @@ bool declared_is_letter(const struct line_word *w)
 }
 
 /*
- * A letter whose axis bears another one. U V W are lengths: in inches where X is, while A B C count the same in all units.
+ * A letter whose axis bears another one. U V W are lengths: in inches where X is, while A B C count
+ * the same in all units.
  */
 static void use_axis(struct translator *t, struct line_word *w, const struct dialect_code *code)
 {

@@ -1,7 +1,8 @@
 /*
- * What a program is written for. Only what LinuxCNC cannot read counts, so that a program that it reads is never read as
- * another dialect, and not what is a mistake as likely (H without G43, G96 without S, G53 before any motion, T1.5): those are
- * read where something else has told the dialect. Names in comments choose where that leaves several.
+ * What a program is written for. Only what LinuxCNC cannot read counts, so that a program that it
+ * reads is never read as another dialect, and not what is a mistake as likely (H without G43, G96
+ * without S, G53 before any motion, T1.5): those are read where something else has told the
+ * dialect. Names in comments choose where that leaves several.
  */
 #include "dialect/dialect.h"
 #include "dialect/difference.h"
@@ -254,8 +255,8 @@ static bool is_declared(const struct line_word *w, const struct dialect_codes *c
 }
 
 /*
- * Axis words before the first motion: Grbl begins in G0. Without any motion behind it is a mistake. Axis words behind the
- * end of a cycle: industry goes on with what was before it.
+ * Axis words before the first motion: Grbl begins in G0. Without any motion behind it is a mistake.
+ * Axis words behind the end of a cycle: industry goes on with what was before it.
  */
 static void look_at_motion(struct look *k)
 {

@@ -1,10 +1,11 @@
 /*
- * Programs for other controllers, read as what they mean: text in, text in takt's own language out, line for line.
+ * Programs for other controllers, read as what they mean: text in, text in takt's own language out,
+ * line for line.
  *
  *     bytes -> line (words) -> table of differences -> text
  *
- * A dialect is a set of rows of one table (difference.c) and a few rules. Nothing is interpreted here: what a line comes to may
- * depend on words before it in the text, never on values.
+ * A dialect is a set of rows of one table (difference.c) and a few rules. Nothing is interpreted
+ * here: what a line comes to may depend on words before it in the text, never on values.
  */
 #ifndef TAKT_HOST_DIALECT_H
 #define TAKT_HOST_DIALECT_H
@@ -36,7 +37,10 @@ struct dialect_arcs {
     uint32_t line;               /* the first that is absolute */
 };
 
-/* Looks at a program line by line; all zeros before the first. dialect_guess_end says what it has come to. */
+/*
+ * Looks at a program line by line; all zeros before the first. dialect_guess_end says what it has
+ * come to.
+ */
 struct dialect_detector {
     uint32_t line;
     bool calls;         /* it has a call, O... call or M98: perhaps of another file */
@@ -58,8 +62,9 @@ void dialect_guess_line(struct dialect_detector *d, const char *line, size_t len
 struct dialect_guess dialect_guess_end(const struct dialect_detector *d);
 
 /*
- * The whole of a program, of length bytes. Its lines keep their numbers: where one becomes several, the further ones begin with
- * DIALECT_GOES_ON, which the interpreter does not count. False: out of memory.
+ * The whole of a program, of length bytes. Its lines keep their numbers: where one becomes several,
+ * the further ones begin with DIALECT_GOES_ON, which the interpreter does not count. False: out of
+ * memory.
  */
 bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
                        size_t length, struct dialect_result *result);

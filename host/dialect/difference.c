@@ -60,7 +60,10 @@ static const struct difference rows[] = {
     CODES(HAAS, 'm', 800, 810, DIFFERENCE_DROP, "automatic door"),
     CODES(HAAS, 'm', 830, 840, DIFFERENCE_DROP, "air blast"),
     CODES(MACH3, 'm', 400, 410, DIFFERENCE_DROP, "gear"),
-    /* Siemens: inches by other numbers, offsets beyond G57, stops at corners and what else shapes a path */
+    /*
+     * Siemens: inches by other numbers, offsets beyond G57, stops at corners and what else shapes a
+     * path
+     */
     CODE(SIEMENS, 'g', 700, DIFFERENCE_REPLACE, "G20"),
     CODE(SIEMENS, 'g', 7000, DIFFERENCE_REPLACE, "G20"),
     CODE(SIEMENS, 'g', 710, DIFFERENCE_REPLACE, "G21"),

@@ -7,7 +7,8 @@
 #include "dialect/dialect.h"
 
 enum difference_kind {
-    DIFFERENCE_DROP, /* the code, and the words right behind it that only it can use; with a warning */
+    /* the code, and the words right behind it that only it can use; with a warning */
+    DIFFERENCE_DROP,
     DIFFERENCE_QUIET,  /* the same without one: it changes nothing */
     DIFFERENCE_LINE,   /* the whole line; with a warning */
     DIFFERENCE_REPLACE /* the code is this text */
@@ -18,8 +19,8 @@ struct difference {
     char letter;
     uint16_t first_x10, last_x10; /* numbers of codes, times ten, both included */
     enum difference_kind kind;
-    bool
-        tells; /* no program for LinuxCNC has it: which one has, is written for one of these dialects */
+    /* no program for LinuxCNC has it: which one has, is written for one of these dialects */
+    bool tells;
     const char *text; /* DIFFERENCE_REPLACE; else what it is for */
 };
 

@@ -11,7 +11,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* From here on a peck without a point is in thousandths: nothing is bored at one go that is so long. */
+/*
+ * From here on a peck without a point is in thousandths: nothing is bored at one go that is so
+ * long.
+ */
 #define WHOLE_MIN 100.0
 
 static struct line_word *find_cycle(struct line *l)
@@ -68,8 +71,8 @@ static void write_peck(struct line *l)
 }
 
 /*
- * A lathe of Fanuc has a distance in R, one of Haas a height: of a program for either it is not clear. False then, unless
- * the machine file says so.
+ * A lathe of Fanuc has a distance in R, one of Haas a height: of a program for either it is not
+ * clear. False then, unless the machine file says so.
  */
 static bool read_meaning(const struct translator *t, bool *distance)
 {

@@ -17,7 +17,10 @@ static void follow_spindle(struct translator *t)
         t->turns = 0;
 }
 
-/* T0102 turns the turret to tool 1 and takes offset 2, 0 none. The spindle goes on meanwhile; M6 stops it. */
+/*
+ * T0102 turns the turret to tool 1 and takes offset 2, 0 none. The spindle goes on meanwhile; M6
+ * stops it.
+ */
 static void index_turret(struct translator *t, struct line_word *tool)
 {
     struct line *l = &t->line;

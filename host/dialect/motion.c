@@ -1,5 +1,6 @@
 /*
- * Which motion a line makes: codes that stay in effect, what goes on behind cycles, and ways to the reference.
+ * Which motion a line makes: codes that stay in effect, what goes on behind cycles, and ways to the
+ * reference.
  */
 #include "dialect/translate.h"
 
@@ -21,8 +22,8 @@ void motion_follow_modes(struct translator *t)
 }
 
 /*
- * Behind a cycle G0 or G1 is in effect again, as it was before it. What is executed before is the text before, as long as
- * there are no jumps and calls.
+ * Behind a cycle G0 or G1 is in effect again, as it was before it. What is executed before is the
+ * text before, as long as there are no jumps and calls.
  */
 static void go_on_behind_cycle(struct translator *t, bool motion, bool other)
 {

@@ -1,13 +1,13 @@
 /*
- * Polar words: @ is the distance from the zero of the work coordinates, ^ the angle. What one of them leaves out is as where
- * the tool is.
+ * Polar words: @ is the distance from the zero of the work coordinates, ^ the angle. What one of
+ * them leaves out is as where the tool is.
  *
  *     #<_polar_radius> = [@] #<_polar_angle> = [^]
  *     X = radius cos angle,  Y = radius sin angle
  * Fanuc's X and Y between G16 and G15 are the same.
  *
- * With G91 they are differences, and so are X and Y; a repeated cycle (L) then is a line for each hole, since the holes may lie
- * on a circle.
+ * With G91 they are differences, and so are X and Y; a repeated cycle (L) then is a line for each
+ * hole, since the holes may lie on a circle.
  */
 #include "dialect/translate.h"
 
@@ -20,7 +20,10 @@
 #define RADIUS_HERE "SQRT[#5420*#5420+#5421*#5421]"
 #define ANGLE_HERE  "ATAN[#5421]/[#5420]"
 
-/* From G16 to G15 X is the distance and Y the angle, in G17 and with G90; otherwise G16 stays, and is told. */
+/*
+ * From G16 to G15 X is the distance and Y the angle, in G17 and with G90; otherwise G16 stays, and
+ * is told.
+ */
 static void rename_words(struct translator *t)
 {
     struct line *l = &t->line;

@@ -1,13 +1,14 @@
 /*
- * What words of one line mean for later ones: registers of tools, work systems, and the speed of turning.
+ * What words of one line mean for later ones: registers of tools, work systems, and the speed of
+ * turning.
  */
 #include "dialect/translate.h"
 
 #include <stdio.h>
 
 /*
- * The word's value for later lines, by the letter that it has there. False: it is too long, so that the word stays where it
- * is and is told as an error there.
+ * The word's value for later lines, by the letter that it has there. False: it is too long, so that
+ * the word stays where it is and is told as an error there.
  */
 static bool keep(const struct line *l, const struct line_word *w, char letter, char *kept,
                  size_t size)
@@ -119,7 +120,8 @@ struct line_word *registers_speed_limit(struct line *l)
 }
 
 /*
- * G50 S2000, of others G92 S2000, is the highest speed for the G96 that follows; G50 without S ends a scale that is not there.
+ * G50 S2000, of others G92 S2000, is the highest speed for the G96 that follows; G50 without S ends
+ * a scale that is not there.
  */
 void registers_translate_speed(struct translator *t)
 {

@@ -1,6 +1,7 @@
 /*
- * Threads of lathes in one cut: G32 Z-20 F1.5 (of some G33 Z-20 F1.5) is G33 Z-20 K1.5. It holds until another motion, and F
- * with it. Along a cone F is measured along one of the axes and K along the cone: those stay as they are, and are told.
+ * Threads of lathes in one cut: G32 Z-20 F1.5 (of some G33 Z-20 F1.5) is G33 Z-20 K1.5. It holds
+ * until another motion, and F with it. Along a cone F is measured along one of the axes and K along
+ * the cone: those stay as they are, and are told.
  */
 #include "dialect/translate.h"
 

@@ -7,7 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A dwell written without a point is in milliseconds from here on: nobody waits for less than that, or for minutes. */
+/*
+ * A dwell written without a point is in milliseconds from here on: nobody waits for less than that,
+ * or for minutes.
+ */
 #define DWELL_MS_MIN 100.0
 
 /* ---- whole lines ---- */

@@ -23,9 +23,15 @@ void polar_translate(struct translator *t);
 void motion_follow_modes(struct translator *t);
 /* G28 and G30, whose axes are named alone or are distances. */
 void motion_translate_reference(struct translator *t);
-/* G53 goes at rapid where no motion is in effect; what was before a cycle stays what goes on behind it. */
+/*
+ * G53 goes at rapid where no motion is in effect; what was before a cycle stays what goes on behind
+ * it.
+ */
 void motion_translate_machine(struct translator *t);
-/* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
+/*
+ * G0 that is in effect at the start, or was given beside G28, which has the axis words of that
+ * line.
+ */
 void motion_translate(struct translator *t);
 
 /* Words that only the code in front of them can mean: not F, S, T and the axes. */

@@ -1,6 +1,7 @@
 /*
- * Turning cycles of Fanuc and Haas in those of LinuxCNC. The profile is blocks N10 to N20 of the program, behind G71; it becomes a
- * subroutine in front of the cycle, and the blocks themselves are passed over:
+ * Turning cycles of Fanuc and Haas in those of LinuxCNC. The profile is blocks N10 to N20 of the
+ * program, behind G71; it becomes a subroutine in front of the cycle, and the blocks themselves are
+ * passed over:
  *
  *     G71 P10 Q20 U0.4 W0.1 D2. F0.2      o93000010 sub / ... / o93000010 endsub
  *                                         G71 Q93000010 D0.2 I2. R0.5, and back to where it began
@@ -134,7 +135,10 @@ static void thousandths(struct line *l, char letter, char *text, size_t size)
         expression(l, letter, "", text, size);
 }
 
-/* From here on a distance without a point is in thousandths: no allowance and no depth of cut is that large. */
+/*
+ * From here on a distance without a point is in thousandths: no allowance and no depth of cut is
+ * that large.
+ */
 #define WHOLE_MIN 100.0
 
 bool turning_is_whole(struct line *l)
@@ -229,8 +233,8 @@ static void take_finish(struct translator *t, double from, double to)
 }
 
 /*
- * To `end` in steps, a little back after each: where the tool is stands in #<_turning_at>, and in #<_turning_way> 1 where that
- * falls, -1 where it rises (a groove from inside).
+ * To `end` in steps, a little back after each: where the tool is stands in #<_turning_at>, and in
+ * #<_turning_way> 1 where that falls, -1 where it rises (a groove from inside).
  */
 static void put_pecks(struct translator *t, char axis, const char *end, const char *step,
                       const char *back)
@@ -322,7 +326,9 @@ static void put_thread(struct translator *t, const struct thread *h)
                   h->finishing > 1.0 ? h->finishing - 1.0 : 0.0, out);
 }
 
-/* K is the height of the thread, D the first cut, both of the radius; X the diameter at its ground. */
+/*
+ * K is the height of the thread, D the first cut, both of the radius; X the diameter at its ground.
+ */
 static void take_thread(struct translator *t)
 {
     struct line *l = &t->line;
@@ -337,7 +343,10 @@ static void take_thread(struct translator *t)
     put_thread(t, &h);
 }
 
-/* The first line: P is three numbers of two digits. The second: P is the height, Q the first cut; R would be a cone. */
+/*
+ * The first line: P is three numbers of two digits. The second: P is the height, Q the first cut; R
+ * would be a cone.
+ */
 static void take_thread_pair(struct translator *t, const struct line_word *p)
 {
     struct line *l = &t->line;

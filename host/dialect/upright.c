@@ -1,6 +1,7 @@
 /*
- * Without a rotary axis in the whole program the tool stays upright, and leading its tip (G43.4) is what G43 does; a plane that
- * is tilted by nothing (G68.2) is no other plane, and G53.1 has nothing to turn.
+ * Without a rotary axis in the whole program the tool stays upright, and leading its tip (G43.4) is
+ * what G43 does; a plane that is tilted by nothing (G68.2) is no other plane, and G53.1 has nothing
+ * to turn.
  */
 #include "dialect/translate.h"
 

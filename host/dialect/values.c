@@ -1,6 +1,6 @@
 /*
- * #<_ini[SECTION]NAME> and #<_hal[PIN]>: what LinuxCNC takes from its configuration and its signals is a number of the machine
- * file here.
+ * #<_ini[SECTION]NAME> and #<_hal[PIN]>: what LinuxCNC takes from its configuration and its signals
+ * is a number of the machine file here.
  */
 #include "dialect/translate.h"
 
@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Spaces and case do not count in names. The length of what has been passed; 0: it is another name. */
+/*
+ * Spaces and case do not count in names. The length of what has been passed; 0: it is another name.
+ */
 static size_t match(const char *text, const char *name)
 {
     size_t at = 0;

@@ -1,6 +1,6 @@
 /*
- * A dictionary of an electronic data sheet: numbers decimal or hexadecimal, $NODEID before or behind a sum, arrays in full or
- * compact (CiA 306, 4.6).
+ * A dictionary of an electronic data sheet: numbers decimal or hexadecimal, $NODEID before or
+ * behind a sum, arrays in full or compact (CiA 306, 4.6).
  */
 #include "drives/dictionary_read.h"
 #include "drives/dictionary_sections.h"
@@ -117,8 +117,8 @@ static bool take_default(struct object_row *row, struct text_part part)
 }
 
 /*
- * Defaults in increments are the machine's, whatever the unit of the drive is, and limits the motor's; as takt's own drive has
- * them.
+ * Defaults in increments are the machine's, whatever the unit of the drive is, and limits the
+ * motor's; as takt's own drive has them.
  */
 static bool is_of_motor(uint16_t index)
 {

@@ -18,9 +18,10 @@ struct dictionary_problem {
 };
 
 /*
- * Reads the text of a data sheet, or of a configuration (DCF, with a section DeviceComissioning), whose parameter values
- * count before defaults; in a data sheet they count where there is no default. False:
- * *wrong says why. A value that is not understood counts as none, as it is with the tools that write them.
+ * Reads the text of a data sheet, or of a configuration (DCF, with a section DeviceComissioning),
+ * whose parameter values count before defaults; in a data sheet they count where there is no
+ * default. False: *wrong says why. A value that is not understood counts as none, as it is with the
+ * tools that write them.
  */
 bool dictionary_read(struct dictionary *dictionary, const char *text, size_t length,
                      struct dictionary_problem *wrong);

@@ -1,6 +1,6 @@
 /*
- * Electronic data sheets, as they are written by many tools: keys in any case, spaces anywhere, arrays in full or compact
- * (CiA 306, 4.6).
+ * Electronic data sheets, as they are written by many tools: keys in any case, spaces anywhere,
+ * arrays in full or compact (CiA 306, 4.6).
  */
 #include "drives/dictionary_sections.h"
 
@@ -150,7 +150,10 @@ static int compare_sections(const void *a, const void *b)
     return x->line < y->line ? -1 : 1;
 }
 
-/* In a configuration the values that have been set count; what has not been set is as it comes from the maker. */
+/*
+ * In a configuration the values that have been set count; what has not been set is as it comes from
+ * the maker.
+ */
 static void prefer_values(struct dictionary_sections *r)
 {
     for (unsigned i = 0; i < r->count; i++) {

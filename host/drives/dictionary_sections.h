@@ -1,5 +1,6 @@
 /*
- * Sections and keys of an electronic data sheet, as they stand in its text: what they mean is for dictionary_read.c.
+ * Sections and keys of an electronic data sheet, as they stand in its text: what they mean is for
+ * dictionary_read.c.
  */
 #ifndef TAKT_HOST_DICTIONARY_SECTIONS_H
 #define TAKT_HOST_DICTIONARY_SECTIONS_H
@@ -55,7 +56,10 @@ struct dictionary_sections {
     bool has_section;
 };
 
-/* The same memory with room for one more, perhaps elsewhere; NULL: there is none, and the old stays. */
+/*
+ * The same memory with room for one more, perhaps elsewhere; NULL: there is none, and the old
+ * stays.
+ */
 void *dictionary_grow(void *memory, unsigned count, unsigned *capacity, size_t size);
 
 /* All of a text, in order of index and sub-index. False: out of memory. */

@@ -289,7 +289,10 @@ static int32_t direction_of(double velocity_mm_s)
     return (velocity_mm_s > 0) - (velocity_mm_s < 0);
 }
 
-/* The edge of the switch that has just been crossed, on the axis: of the home switch the nearer to where the table was. */
+/*
+ * The edge of the switch that has just been crossed, on the axis: of the home switch the nearer to
+ * where the table was.
+ */
 static double edge_mm(const struct drive_plant *plant, uint32_t input, bool is_active)
 {
     const struct drive_plant_config *c = &plant->config;

@@ -36,12 +36,12 @@ struct drive_plant_config {
 
     double friction_forward_nm
         [FRICTION_POINTS]; /* friction as measured, which is fed forward: at rest, */
-    double
-        friction_forward_step_mm_s; /* and at whole multiples of this; 0: the first at all velocities */
+    /* and at whole multiples of this; 0: the first at all velocities */
+    double friction_forward_step_mm_s;
 
     double told_inertia_kg_m2; /* what the loops take the inertia for; 0: what it is */
-    uint32_t
-        torque_delay_steps; /* of the loops, until the motor has the torque; 0 ... below DELAY_MAX */
+    /* of the loops, until the motor has the torque; 0 ... below DELAY_MAX */
+    uint32_t torque_delay_steps;
 
     uint32_t loop_period_us; /* of both loops and the integration; 1 ... 1000 */
 
@@ -59,8 +59,8 @@ struct drive_plant_config {
     double limit_switch_min_mm; /* switches on the axis: active at or below, */
     double limit_switch_max_mm; /* at or above */
     double home_switch_mm;      /* active at or above */
-    double
-        home_switch_length_mm; /* up to so much above; 0: without an end. If the motor turns the other way: below */
+    /* up to so much above; 0: without an end. If the motor turns the other way: below */
+    double home_switch_length_mm;
     double hard_stop_min_mm; /* the motor comes no farther */
     double hard_stop_max_mm;
 
@@ -114,8 +114,8 @@ void drive_plant_set_default(struct drive_plant_config *config);
 const char *drive_plant_check(const struct drive_plant_config *config);
 
 /*
- * config has passed drive_plant_check. The plant stands still at start_mm, without torque. turns_round: the motor turns the
- * other way than the axis counts.
+ * config has passed drive_plant_check. The plant stands still at start_mm, without torque.
+ * turns_round: the motor turns the other way than the axis counts.
  */
 void drive_plant_init(struct drive_plant *plant, const struct drive_plant_config *config,
                       bool turns_round);
@@ -126,7 +126,9 @@ struct motor_port drive_plant_get_port(struct drive_plant *plant);
 /* What the drive has to know of the motor, and how its loops are tuned. */
 struct servo_loop_config drive_plant_get_loop(const struct drive_plant_config *config);
 
-/* Where the table stands on the axis: the motor's position, the play in it and the error of pitch. */
+/*
+ * Where the table stands on the axis: the motor's position, the play in it and the error of pitch.
+ */
 double drive_plant_table_mm(const struct drive_plant *plant);
 
 /* The encoder reads by_mm more from now on, though nothing has moved. */

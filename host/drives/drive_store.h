@@ -1,5 +1,6 @@
 /*
- * What a drive has stored by object 1010, as a text: a line for every value that is not the one of power-on,
+ * What a drive has stored by object 1010, as a text: a line for every value that is not the one of
+ * power-on,
  *
  *     node 9              the node id it has been given by LSS; 255: none
  *     1017:00 0064        index and sub-index, then the number, all hexadecimal
@@ -22,9 +23,9 @@ struct drive_store_problem {
 };
 
 /*
- * Before the drive boots: it is switched on with these values. False: *wrong says why; the drive must not be used. Values
- * that go beyond what may be written, and objects the drive does not have, are wrong; whether a mapping makes sense is
- * looked at when it is used, as with a data sheet.
+ * Before the drive boots: it is switched on with these values. False: *wrong says why; the drive
+ * must not be used. Values that go beyond what may be written, and objects the drive does not have,
+ * are wrong; whether a mapping makes sense is looked at when it is used, as with a data sheet.
  */
 bool drive_store_read(struct servo *drive, const char *text, size_t length,
                       struct drive_store_problem *wrong);

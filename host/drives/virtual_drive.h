@@ -1,6 +1,6 @@
 /*
- * A virtual drive: a drive's firmware (servo/servo.h) with a virtual motor, which scripted faults may happen to. It knows a
- * port, not a bus: whoever owns it hands in the frames and the time.
+ * A virtual drive: a drive's firmware (servo/servo.h) with a virtual motor, which scripted faults
+ * may happen to. It knows a port, not a bus: whoever owns it hands in the frames and the time.
  */
 #ifndef TAKT_DRIVES_VIRTUAL_DRIVE_H
 #define TAKT_DRIVES_VIRTUAL_DRIVE_H

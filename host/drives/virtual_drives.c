@@ -81,7 +81,9 @@ void virtual_drives_init(struct virtual_drives *set, struct bus bus[],
     }
 }
 
-/* What one drive says the others of this process hear, too; a bus gives it only to other processes. */
+/*
+ * What one drive says the others of this process hear, too; a bus gives it only to other processes.
+ */
 static bool send_own(void *context, const struct can_frame *frame)
 {
     const struct virtual_drives_port *way = context;
@@ -181,7 +183,10 @@ static bool touched_at(const struct virtual_drives *set, double ratio)
 /* Halvings of a cycle: fewer increments than 2^32 are passed in it. */
 #define HALVINGS 32
 
-/* The edge lies between two moments of the last cycle; what touches for less than a cycle is not seen. */
+/*
+ * The edge lies between two moments of the last cycle; what touches for less than a cycle is not
+ * seen.
+ */
 static void look_for_contact(struct virtual_drives *set)
 {
     bool touches = touched_at(set, 1);

@@ -31,7 +31,10 @@ struct virtual_drives_port {
     unsigned index;
 };
 
-/* What the touch probes of all drives are wired to: does it touch where the drives are, mm or rad, by their index? */
+/*
+ * What the touch probes of all drives are wired to: does it touch where the drives are, mm or rad,
+ * by their index?
+ */
 struct virtual_drives_contact {
     bool (*touches)(void *context, const double position_mm[VIRTUAL_DRIVES_MAX]);
     void *context;
@@ -61,13 +64,14 @@ struct virtual_drives {
 };
 
 /*
- * The default plant for every drive, nodes 1, 2, ..., 100,000 increments/mm, standing at 0, a target
- * every millisecond.
+ * The default plant for every drive, nodes 1, 2, ..., 100,000 increments/mm, standing at 0, a
+ * target every millisecond.
  */
 void virtual_drives_set_default(struct virtual_drives_config *config, unsigned count);
 
 /*
- * Attaches the drives to their buses and boots them. bus: all of them. set and bus must stay where they are from now on.
+ * Attaches the drives to their buses and boots them. bus: all of them. set and bus must stay where
+ * they are from now on.
  */
 void virtual_drives_init(struct virtual_drives *set, struct bus bus[],
                          const struct virtual_drives_config *config);
@@ -107,16 +111,22 @@ bool virtual_drives_take_by_sync(struct virtual_drives *set, const struct can_fr
 void virtual_drives_step(struct virtual_drives *set, uint32_t cycle_ns);
 
 /*
- * Real time has gone by for drives that take SYNC for their clock. Their time stands still meanwhile, since a controller
- * may take as long over a cycle as it likes; but a dead one must be noticed. When enabled drives have had no SYNC for
- * patience_ns, or since the controller has left for two thirds of the shortest heartbeat time they watch (object 1016),
- * time goes on by itself until the next SYNC. The last third is for their supervision and for braking.
+ * Real time has gone by for drives that take SYNC for their clock. Their time stands still
+ * meanwhile, since a controller may take as long over a cycle as it likes; but a dead one must be
+ * noticed. When enabled drives have had no SYNC for patience_ns, or since the controller has left
+ * for two thirds of the shortest heartbeat time they watch (object 1016), time goes on by itself
+ * until the next SYNC. The last third is for their supervision and for braking.
  */
 void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns, uint64_t patience_ns);
-/* The controller, or another one on the bus, has left; or nobody can hear it if it does: then before every wait. */
+/*
+ * The controller, or another one on the bus, has left; or nobody can hear it if it does: then
+ * before every wait.
+ */
 void virtual_drives_leave(struct virtual_drives *set);
 
-/* Time since power-on, and since when all drives are enabled (INJECT_ALWAYS: they have not been). */
+/*
+ * Time since power-on, and since when all drives are enabled (INJECT_ALWAYS: they have not been).
+ */
 const struct inject_clock *virtual_drives_get_clock(const struct virtual_drives *set);
 
 /* All drives have been told the same period of SYNC (object 1006). */

@@ -32,8 +32,8 @@ struct lint {
     double stock_top_mm; /* work coordinate of Z */
     unsigned findings;
     uint32_t lines;
-    uint8_t *
-        seen; /* of each line: bit of a rule that has found it, bit RULE_COUNT: it has been executed */
+    /* of each line: bit of a rule that has found it, bit RULE_COUNT: it has been executed */
+    uint8_t *seen;
     /* what the moves so far leave */
     struct point at;
     bool z_known, turns, turned_told, radius_told;
@@ -300,7 +300,10 @@ static void take_block(void *context, const struct planned_block *planned)
     feed->governor = planned->governor;
 }
 
-/* Once all feeds of the program have been reached, its rest, which may take days, has no more to say. */
+/*
+ * Once all feeds of the program have been reached, its rest, which may take days, has no more to
+ * say.
+ */
 static bool wants_more(void *context, const struct planned_block *planned)
 {
     struct lint *l = context;

@@ -1,6 +1,6 @@
 /*
- * What in a program is right and yet hardly meant: rules over its canonical moves, its lines and its planned blocks. What stands
- * in the program's comments or the machine file is not asked.
+ * What in a program is right and yet hardly meant: rules over its canonical moves, its lines and
+ * its planned blocks. What stands in the program's comments or the machine file is not asked.
  */
 #ifndef TAKT_HOST_LINT_H
 #define TAKT_HOST_LINT_H

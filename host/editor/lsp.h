@@ -1,5 +1,6 @@
 /*
- * A server of the language server protocol (3.17): requests and notifications of an editor in, answers and diagnostics out.
+ * A server of the language server protocol (3.17): requests and notifications of an editor in,
+ * answers and diagnostics out.
  *
  *     bytes ─ lsp_frames ─> messages ─ lsp ─> documents ─ lsp_program ─> answers
  *

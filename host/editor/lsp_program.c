@@ -85,7 +85,10 @@ static int severity(const char *kind)
     return strcmp(kind, "warning") == 0 ? SEVERITY_WARNING : SEVERITY_INFORMATION;
 }
 
-/* What is about another file, a subroutine's or the machine's, stands on the first line with the place before it. */
+/*
+ * What is about another file, a subroutine's or the machine's, stands on the first line with the
+ * place before it.
+ */
 static void hear(void *context, const struct message *m)
 {
     const struct listener *l = context;

@@ -1,6 +1,7 @@
 /*
- * What takt says about a program in an editor: everything `takt check` and `takt lint` find, what a word means and which
- * modes are in effect there, and where a subroutine is. Answers are JSON of the protocol, owned by the caller.
+ * What takt says about a program in an editor: everything `takt check` and `takt lint` find, what a
+ * word means and which modes are in effect there, and where a subroutine is. Answers are JSON of
+ * the protocol, owned by the caller.
  */
 #ifndef TAKT_HOST_LSP_PROGRAM_H
 #define TAKT_HOST_LSP_PROGRAM_H

@@ -25,7 +25,10 @@ const char *lsp_text_line(const char *text, size_t text_length, uint32_t line, s
     return at;
 }
 
-/* Code units that begin with a byte of UTF-8: none inside of a character, two beyond the first plane. */
+/*
+ * Code units that begin with a byte of UTF-8: none inside of a character, two beyond the first
+ * plane.
+ */
 static size_t units_of(unsigned char byte)
 {
     if ((byte & 0xc0U) == 0x80U)

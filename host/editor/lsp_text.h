@@ -1,5 +1,6 @@
 /*
- * Places in the documents of an editor: it counts lines and UTF-16 code units from 0, and names files by URI.
+ * Places in the documents of an editor: it counts lines and UTF-16 code units from 0, and names
+ * files by URI.
  */
 #ifndef TAKT_HOST_LSP_TEXT_H
 #define TAKT_HOST_LSP_TEXT_H

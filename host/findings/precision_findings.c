@@ -91,9 +91,10 @@ static double longest_steps(const struct precision *p)
 }
 
 /*
- * The error is that of the position when its setpoint is due. Even steps are off by half a step. By evaluation functions
- * a point is within a step of a line, or radially of a circle, whose start and centre are rounded to steps: one more at
- * most; and along it up to two steps early or late, because ticks come evenly (firmware/step/README.md).
+ * The error is that of the position when its setpoint is due. Even steps are off by half a step. By
+ * evaluation functions a point is within a step of a line, or radially of a circle, whose start and
+ * centre are rounded to steps: one more at most; and along it up to two steps early or late,
+ * because ticks come evenly (firmware/step/README.md).
  */
 static void print_steps(const struct precision *p)
 {

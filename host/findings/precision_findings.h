@@ -1,4 +1,7 @@
-/* What `takt precision` found: errors of every interpolator beside their bounds, and lengths of words. */
+/*
+ * What `takt precision` found: errors of every interpolator beside their bounds, and lengths of
+ * words.
+ */
 #ifndef TAKT_HOST_FINDINGS_PRECISION_FINDINGS_H
 #define TAKT_HOST_FINDINGS_PRECISION_FINDINGS_H
 

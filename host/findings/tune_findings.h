@@ -1,4 +1,7 @@
-/* What `takt tune` found: figures, sections of a machine file, a configuration of the drive, JSON, pictures. */
+/*
+ * What `takt tune` found: figures, sections of a machine file, a configuration of the drive, JSON,
+ * pictures.
+ */
 #ifndef TAKT_HOST_FINDINGS_TUNE_FINDINGS_H
 #define TAKT_HOST_FINDINGS_TUNE_FINDINGS_H
 

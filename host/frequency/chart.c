@@ -65,7 +65,9 @@ static void write_grid_number(FILE *file, const struct chart *chart, double valu
         write_text(file, LEFT - 8, y_px(chart, value) + 4, "end", words);
 }
 
-/* Lines at 1, 2, 5 of each decade; numbers beside those at 1, and at 2 and 5 where there is room. */
+/*
+ * Lines at 1, 2, 5 of each decade; numbers beside those at 1, and at 2 and 5 where there is room.
+ */
 static void draw_grid(FILE *file, const struct chart *chart, struct chart_range range,
                       bool is_vertical)
 {

@@ -22,7 +22,9 @@ static const double jerks_m_s3[] = {5, 50, 500, 5000};
 /* Feed of the chord-error diagram for a machine without a feed limit: the paper's example. */
 #define EXAMPLE_FEED_MM_S (5000.0 / 60)
 
-/* What a curve needs to know: the question, the diagram's range of x, and the member of its family. */
+/*
+ * What a curve needs to know: the question, the diagram's range of x, and the member of its family.
+ */
 struct curve_context {
     const struct frequency_question *question;
     struct chart_range x;

@@ -17,7 +17,8 @@ struct frequency_question {
 };
 
 enum frequency_diagram {
-    FREQUENCY_CHORD_ERROR, /* over the control frequency, for circles of several radii at the highest feed */
+    /* over the control frequency, for circles of several radii at the highest feed */
+    FREQUENCY_CHORD_ERROR,
     FREQUENCY_ALLOWED_FEED, /* over the radius, by feed limit, accelerations and jerks */
     FREQUENCY_NEEDED,       /* frequency over the feed, for radii, accelerations and jerks */
     FREQUENCY_DIAGRAMS

@@ -1,6 +1,6 @@
 /*
- * The machines that seed 000 names: feed limit, acceleration in parts of g, and a jerk that none of them exceeds. Of one
- * of them it gives no limits: they are 0.
+ * The machines that seed 000 names: feed limit, acceleration in parts of g, and a jerk that none of
+ * them exceeds. Of one of them it gives no limits: they are 0.
  */
 #ifndef TAKT_FREQUENCY_MACHINES_H
 #define TAKT_FREQUENCY_MACHINES_H

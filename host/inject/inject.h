@@ -6,8 +6,8 @@
  *     if (!inject_read(&script, text, length, &error)) ... "FILE:LINE:COLUMN: error: TEXT" ...
  *     ... every cycle: clock.now_ns = ...;  if (inject_is_in_force(&script.fault[i], &clock)) ...
  *
- * This room reads scripts and tells the time. What a fault does is done by whoever can do it: faults
- * of the bus by the bus, faults of a drive by that drive.
+ * This room reads scripts and tells the time. What a fault does is done by whoever can do it:
+ * faults of the bus by the bus, faults of a drive by that drive.
  */
 #ifndef TAKT_INJECT_INJECT_H
 #define TAKT_INJECT_INJECT_H
@@ -106,7 +106,9 @@ struct inject_clock {
     uint64_t enabled_ns; /* when all drives were enabled first; INJECT_ALWAYS: not yet */
 };
 
-/* Reads a script. False: *error says what is wrong and where; *script holds what stands before it. */
+/*
+ * Reads a script. False: *error says what is wrong and where; *script holds what stands before it.
+ */
 bool inject_read(struct inject *script, const char *text, size_t length,
                  struct inject_error *error);
 

@@ -1,6 +1,6 @@
 /*
- * takt as a library: what the commands run, canon, convert, plan, compile and machine do, for programs that call it in their own
- * process.
+ * takt as a library: what the commands run, canon, convert, plan, compile and machine do, for
+ * programs that call it in their own process.
  *
  *     struct takt_job *job = takt_open(argc, argv, texts, count);      "run", "part.ngc", "--machine", "<mill>"
  *     status = takt_start(job, TAKT_KEEPS_TRACE);
@@ -9,9 +9,9 @@
  *     status = takt_finish(job, 0);                                    takt_get_text: the summary as JSON
  *     takt_close(job);
  *
- * The words are those of the command line, so that `takt help` documents them; files may be held in memory instead. Nothing
- * is printed: messages are kept. A status is the exit status of the command. Jobs share nothing: any number may be open, each
- * used by one thread at a time.
+ * The words are those of the command line, so that `takt help` documents them; files may be held in
+ * memory instead. Nothing is printed: messages are kept. A status is the exit status of the
+ * command. Jobs share nothing: any number may be open, each used by one thread at a time.
  *
  * Only plain declarations stand here: host/python reads this file as it is.
  */
@@ -80,12 +80,18 @@ const char *takt_get_text(const struct takt_job *job, size_t *length);
 /* Writes the output of canon, convert, plan, compile and machine; that of plan as JSON. */
 int takt_write(struct takt_job *job);
 
-/* For run, in this order. keeps: TAKT_KEEPS_... Checks the program, plans it ahead if asked to; the drives boot. */
+/*
+ * For run, in this order. keeps: TAKT_KEEPS_... Checks the program, plans it ahead if asked to; the
+ * drives boot.
+ */
 int takt_start(struct takt_job *job, unsigned keeps);
 /* Goes on by this many control cycles; fewer where the run is over. */
 int takt_step(struct takt_job *job, uint64_t cycles);
 int takt_is_over(const struct takt_job *job);
-/* Comes to rest and sums up: the text is the JSON of `takt run --json`. cut: not 0: ends before its time, with this status. */
+/*
+ * Comes to rest and sums up: the text is the JSON of `takt run --json`. cut: not 0: ends before its
+ * time, with this status.
+ */
 int takt_finish(struct takt_job *job, int cut);
 /* The text is the HTML of `takt run --report`; behind takt_finish. */
 int takt_write_report(struct takt_job *job);
@@ -118,8 +124,8 @@ double *takt_take_column(struct takt_job *job, unsigned column);
 void takt_free(void *memory);
 
 /*
- * run, canon, convert, plan, compile or machine with its options, as the command itself: it prints, and signals end it in order. For a
- * process of its own. Returns the exit status.
+ * run, canon, convert, plan, compile or machine with its options, as the command itself: it prints,
+ * and signals end it in order. For a process of its own. Returns the exit status.
  */
 int takt_command(int argc, char **argv);
 

@@ -53,7 +53,10 @@ struct link_config {
     /* bit/s. Set on serial adapters, which know 10k ... 1M; interfaces and servers have theirs. */
     uint32_t bitrate;
     bool fd; /* CAN FD frames are wanted too, where the bus has them */
-    /* bit/s. > 0: the port speaks CAN FD. Serial adapters are told, as they know whole Mbit/s; else 5 of them. */
+    /*
+     * bit/s. > 0: the port speaks CAN FD. Serial adapters are told, as they know whole Mbit/s; else
+     * 5 of them.
+     */
     uint32_t data_bitrate;
     /* Frames wanted; count 0: all. Only interfaces filter, in the kernel; others bring all. */
     const struct link_filter *filters;
@@ -86,7 +89,10 @@ struct link *link_open(const char *spec, const struct link_config *config,
 void link_close(
     struct link *link); /* NULL: nothing. What is queued is tried once, without waiting */
 
-/* The bus as the firmware and drives see it: data frames with 11-bit identifiers; all that it sends are of one kind. */
+/*
+ * The bus as the firmware and drives see it: data frames with 11-bit identifiers; all that it sends
+ * are of one kind.
+ */
 struct can_port link_get_port(struct link *link);
 
 /*

@@ -1,5 +1,6 @@
 /*
- * Built where there are no interfaces, serial lines and sockets: in a page. The bus inside the process is all there is.
+ * Built where there are no interfaces, serial lines and sockets: in a page. The bus inside the
+ * process is all there is.
  */
 #include "link/link_private.h"
 #include "link/stream.h"

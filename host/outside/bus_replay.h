@@ -1,4 +1,6 @@
-/* The frames of a bus log, sent again onto a bus outside of the process, at the times of the log. */
+/*
+ * The frames of a bus log, sent again onto a bus outside of the process, at the times of the log.
+ */
 #ifndef TAKT_HOST_OUTSIDE_BUS_REPLAY_H
 #define TAKT_HOST_OUTSIDE_BUS_REPLAY_H
 

@@ -21,7 +21,10 @@
 /* Cycles a drive makes up for when it has been kept from running; what is more is lost time. */
 #define CYCLES_BEHIND_MAX 100
 
-/* A controller that says nothing for so long is given up, as drives are by it (simulation/lockstep.h). */
+/*
+ * A controller that says nothing for so long is given up, as drives are by it
+ * (simulation/lockstep.h).
+ */
 #define PATIENCE_NS UINT64_C(5000000000)
 
 struct eds_text {

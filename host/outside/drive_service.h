@@ -1,10 +1,11 @@
 /*
- * Virtual drives as a service: nodes of a bus outside of this process, for whatever master is there.
+ * Virtual drives as a service: nodes of a bus outside of this process, for whatever master is
+ * there.
  *
  * The drives keep their own time, a cycle of the wall clock each, until a controller tells all of
- * them the period of SYNC (object 1006): from then on SYNC is their clock, so that the controller may
- * run as fast as both sides go and gets the same answers in every run. Paced drives keep to the wall
- * clock whatever they are told.
+ * them the period of SYNC (object 1006): from then on SYNC is their clock, so that the controller
+ * may run as fast as both sides go and gets the same answers in every run. Paced drives keep to the
+ * wall clock whatever they are told.
  */
 #ifndef TAKT_HOST_DRIVE_SERVICE_H
 #define TAKT_HOST_DRIVE_SERVICE_H

@@ -1,4 +1,7 @@
-/* Virtual drives for a master outside of the process: which ones, of what machine or data sheet, and what befalls them. */
+/*
+ * Virtual drives for a master outside of the process: which ones, of what machine or data sheet,
+ * and what befalls them.
+ */
 #ifndef TAKT_HOST_OUTSIDE_DRIVE_SETUP_H
 #define TAKT_HOST_OUTSIDE_DRIVE_SETUP_H
 

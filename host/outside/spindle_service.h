@@ -1,5 +1,6 @@
 /*
- * The virtual spindle as a service: its converter's registers on Modbus TCP or on a serial line, its time the wall clock's.
+ * The virtual spindle as a service: its converter's registers on Modbus TCP or on a serial line,
+ * its time the wall clock's.
  */
 #ifndef TAKT_HOST_SPINDLE_SERVICE_H
 #define TAKT_HOST_SPINDLE_SERVICE_H
@@ -23,8 +24,8 @@ struct spindle_service {
 };
 
 /*
- * where: HOST:PORT, or PATH[,BAUD[,PARITY]] with a '/' in it. Says on stdout where it is, unless quiet. False after a
- * message: nothing is open.
+ * where: HOST:PORT, or PATH[,BAUD[,PARITY]] with a '/' in it. Says on stdout where it is, unless
+ * quiet. False after a message: nothing is open.
  */
 bool spindle_service_start(struct spindle_service *service, const struct machine_setup *setup,
                            const char *where, uint8_t unit, bool quiet);

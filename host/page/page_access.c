@@ -37,7 +37,9 @@ static bool is_address(const char *text)
     return inet_pton(AF_INET, text, &room) == 1 || inet_pton(AF_INET6, text, &room) == 1;
 }
 
-/* mill, mill.local, mill.shop.example where this computer calls itself mill or mill.shop.example. */
+/*
+ * mill, mill.local, mill.shop.example where this computer calls itself mill or mill.shop.example.
+ */
 static bool is_own_name(const char *text, const char *name)
 {
     const size_t length = strcspn(name, ".");

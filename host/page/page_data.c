@@ -108,7 +108,10 @@ static void show_path(struct page_data *data)
     data->listener.tell_all(data->listener.context, &data->other);
 }
 
-/* The way is drawn anew for another program, and, between two runs, when offsets or tools have changed. */
+/*
+ * The way is drawn anew for another program, and, between two runs, when offsets or tools have
+ * changed.
+ */
 static void keep_path(struct page_data *data)
 {
     const uint32_t *value = data->snapshot.value;

@@ -1,6 +1,6 @@
 /*
- * What pages are sent at each moment, and what the control thread is asked for on their behalf: the part of the page's
- * thread that knows nothing of sockets.
+ * What pages are sent at each moment, and what the control thread is asked for on their behalf: the
+ * part of the page's thread that knows nothing of sockets.
  */
 #ifndef TAKT_PAGE_PAGE_DATA_H
 #define TAKT_PAGE_PAGE_DATA_H
@@ -59,7 +59,9 @@ struct page_data {
 bool page_data_open(struct page_data *data, size_t tools_max);
 void page_data_close(struct page_data *data);
 
-/* 30 times a second: a new frame, and what else there is. time_ms: of the wall clock, since 1970. */
+/*
+ * 30 times a second: a new frame, and what else there is. time_ms: of the wall clock, since 1970.
+ */
 void page_data_tick(struct page_data *data, double time_ms);
 
 /* False: there are too many already. */

@@ -1,7 +1,7 @@
 /*
- * Between the control cycle and the page's thread, beside the panel's exchange: what every cycle did, and what has to be
- * done between two cycles because only the control thread may look there. The control cycle never waits here: a cycle
- * that finds no room is left out of what pages show.
+ * Between the control cycle and the page's thread, beside the panel's exchange: what every cycle
+ * did, and what has to be done between two cycles because only the control thread may look there.
+ * The control cycle never waits here: a cycle that finds no room is left out of what pages show.
  *
  *     control thread    page_link_put               -> queue -> page_link_take      page's thread
  *                       page_link_get_job, _finish  <-  job  <- page_link_ask, _answer

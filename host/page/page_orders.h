@@ -44,11 +44,15 @@ struct page_command {
 
 void page_client_open(struct page_client *client, unsigned number, struct panel_host *panel,
                       const struct page_setup *setup);
-/* The browser is gone: what it jogs stops at once, and the control it has claimed is given up if nothing runs by it. */
+/*
+ * The browser is gone: what it jogs stops at once, and the control it has claimed is given up if
+ * nothing runs by it.
+ */
 void page_client_close(struct page_client *client);
 
 /*
- * A message. What is to be answered now stands in reply, which else stays empty. True: *command is for the control thread.
+ * A message. What is to be answered now stands in reply, which else stays empty. True: *command is
+ * for the control thread.
  */
 bool page_orders_take(struct page_client *client, const char *text, size_t length,
                       struct page_text *reply, struct page_command *command);

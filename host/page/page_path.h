@@ -1,8 +1,9 @@
 /*
- * Where a program goes, as points to be drawn: however long it is, the points are no more than a browser can draw.
+ * Where a program goes, as points to be drawn: however long it is, the points are no more than a
+ * browser can draw.
  *
- * When the room is full every second point is left out, and from then on as many more of those that come; ends of lines of
- * the program are points like any others.
+ * When the room is full every second point is left out, and from then on as many more of those that
+ * come; ends of lines of the program are points like any others.
  */
 #ifndef TAKT_PAGE_PAGE_PATH_H
 #define TAKT_PAGE_PAGE_PATH_H

@@ -1,6 +1,7 @@
 /*
- * What the setpoints of many cycles come to, for a screen that is drawn far more rarely: of each axis the largest velocity,
- * acceleration, jerk and following error since the last look, by differences, and points of the way.
+ * What the setpoints of many cycles come to, for a screen that is drawn far more rarely: of each
+ * axis the largest velocity, acceleration, jerk and following error since the last look, by
+ * differences, and points of the way.
  */
 #ifndef TAKT_PAGE_PAGE_PEAKS_H
 #define TAKT_PAGE_PAGE_PEAKS_H
@@ -14,8 +15,8 @@ enum page_peak { PAGE_VELOCITY, PAGE_ACCELERATION, PAGE_JERK, PAGE_FOLLOWING, PA
 
 struct page_peaks {
     double cycle_s;
-    unsigned
-        known; /* cycles without a gap before this one, up to 3: of what order differences are known */
+    /* cycles without a gap before this one, up to 3: of what order differences are known */
+    unsigned known;
     unsigned skipped; /* cycles since the last point */
     unsigned every;   /* cycles between two points */
     uint32_t number;

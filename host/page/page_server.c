@@ -22,7 +22,10 @@
 /* A request must be whole so long after its first byte. */
 #define REQUEST_S 5
 
-/* Open at once, requests among them: others of this process have need of files too (1024 as a rule). */
+/*
+ * Open at once, requests among them: others of this process have need of files too (1024 as a
+ * rule).
+ */
 #define CONNECTIONS_MAX 512
 
 #define RECEIVED_MAX 16384
@@ -233,7 +236,10 @@ static void *run(void *context)
     const struct sched_param last = {.sched_priority = 0};
     struct page_server *server = context;
 
-    /* The first place in the queue for the processor is the control thread's alone; it has been passed on. */
+    /*
+     * The first place in the queue for the processor is the control thread's alone; it has been
+     * passed on.
+     */
     (void)pthread_setschedparam(pthread_self(), SCHED_OTHER, &last);
     while (!atomic_load(&server->is_to_end) && lws_service(server->context, 0) >= 0) {
     }

@@ -1,6 +1,7 @@
 /*
- * The page in the browser: an HTTP server with one thread of its own, by libwebsockets. It looks at what the control cycle
- * has published and gives orders by the panel's rules; the control cycle waits for none of it.
+ * The page in the browser: an HTTP server with one thread of its own, by libwebsockets. It looks at
+ * what the control cycle has published and gives orders by the panel's rules; the control cycle
+ * waits for none of it.
  *
  * Without the library the room builds with page_server_absent.c: page_server_is_there says so.
  */

@@ -41,7 +41,9 @@ struct page_setup {
 
 /* Called by the page's threads; context is its owner's. */
 struct page_owner {
-    /* The program that CYCLE_START starts; valid while the panel is locked. False: there is none. */
+    /*
+     * The program that CYCLE_START starts; valid while the panel is locked. False: there is none.
+     */
     bool (*get_program)(void *context, const char **text, size_t *size);
     /* Where the program goes; may take long, and runs in a thread of its own. */
     void (*draw)(void *context, const struct page_source *source, struct page_path *path);

@@ -74,7 +74,10 @@ void page_text_add(struct page_text *text, const char *format, ...)
     text->length += (size_t)length;
 }
 
-/* Bytes of the character that begins here, 0: it is none (RFC 3629, overlong forms and surrogates left to the reader). */
+/*
+ * Bytes of the character that begins here, 0: it is none (RFC 3629, overlong forms and surrogates
+ * left to the reader).
+ */
 static size_t character_length(const unsigned char *at)
 {
     const size_t length = at[0] < 0x80                    ? 1

@@ -1,5 +1,6 @@
 /*
- * The pages that are open: texts that wait for them, and what they say. For the thread of page_server alone.
+ * The pages that are open: texts that wait for them, and what they say. For the thread of
+ * page_server alone.
  */
 #ifndef TAKT_PAGE_PAGE_VISITORS_H
 #define TAKT_PAGE_PAGE_VISITORS_H

@@ -41,7 +41,9 @@ static void turn(double v[AXIS_LINEAR_COUNT], unsigned about, double angle_rad)
     *second = sine * before + cosine * *second;
 }
 
-/* Where a point of the machine is on the part, as its solids are told: P + R' (T' (p - P) - offset) */
+/*
+ * Where a point of the machine is on the part, as its solids are told: P + R' (T' (p - P) - offset)
+ */
 static void to_part(const struct virtual_probe_part *part, struct point *at)
 {
     double v[AXIS_LINEAR_COUNT];

@@ -22,7 +22,10 @@
 #define VIRTUAL_PROBE_CHANGES_MAX    256
 #define VIRTUAL_PROBE_ERROR_TEXT_MAX 127
 
-/* Everything between low and high, mm and rad; with a radius what is so near to the centre, which is low, or a hole. */
+/*
+ * Everything between low and high, mm and rad; with a radius what is so near to the centre, which
+ * is low, or a hole.
+ */
 struct virtual_probe_solid {
     double low[AXIS_COUNT], high[AXIS_COUNT];
     double radius_mm; /* 0: a box */
@@ -30,8 +33,9 @@ struct virtual_probe_solid {
 };
 
 /*
- * How the part on which the solids are stands: as they are told, turned about a point (about X first, then Y, then Z) and
- * displaced; and all of it turned with a table about an axis through that point.
+ * How the part on which the solids are stands: as they are told, turned about a point (about X
+ * first, then Y, then Z) and displaced; and all of it turned with a table about an axis through
+ * that point.
  */
 struct virtual_probe_part {
     bool is_displaced;

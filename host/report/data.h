@@ -1,5 +1,6 @@
 /*
- * A recording as JSON, for the page's scripts. Columns of numbers are base64 of little-endian uint32 or float32.
+ * A recording as JSON, for the page's scripts. Columns of numbers are base64 of little-endian
+ * uint32 or float32.
  */
 #ifndef TAKT_REPORT_DATA_H
 #define TAKT_REPORT_DATA_H

@@ -24,7 +24,10 @@ static bool write_bytes(FILE *file, const unsigned char *bytes, size_t size)
     return fwrite(bytes, 1, size, file) == size;
 }
 
-/* '<' stands only inside strings of JSON; escaped there, no text can end the script element it lies in. NULL: none. */
+/*
+ * '<' stands only inside strings of JSON; escaped there, no text can end the script element it lies
+ * in. NULL: none.
+ */
 static bool write_json(FILE *file, const char *json)
 {
     if (json == NULL)

@@ -1,10 +1,11 @@
 /*
  * Many series over the same cycles, thinned so that every peak survives.
  *
- * The cycles are cut into buckets of equal width; a bucket keeps the smallest and the largest value of each series
- * and the cycles they stood at. A bucket starts one cycle wide; whenever THIN_BUCKETS_MAX are full they are merged
- * in pairs and the width doubles. So memory is bounded however long a run is, the result depends on the values
- * alone, and a run of up to THIN_BUCKETS_MAX cycles is kept whole.
+ * The cycles are cut into buckets of equal width; a bucket keeps the smallest and the largest value
+ * of each series and the cycles they stood at. A bucket starts one cycle wide; whenever
+ * THIN_BUCKETS_MAX are full they are merged in pairs and the width doubles. So memory is bounded
+ * however long a run is, the result depends on the values alone, and a run of up to
+ * THIN_BUCKETS_MAX cycles is kept whole.
  */
 #ifndef TAKT_REPORT_THIN_H
 #define TAKT_REPORT_THIN_H
@@ -39,7 +40,9 @@ struct thin {
 bool thin_open(struct thin *t, unsigned series);
 void thin_close(struct thin *t);
 
-/* The values of all series at the next cycle; NaN: the series has none there. Cycles come in order. */
+/*
+ * The values of all series at the next cycle; NaN: the series has none there. Cycles come in order.
+ */
 void thin_add(struct thin *t, uint32_t cycle, const float *value);
 
 /* What is left of one series, in order of time, into point[THIN_POINTS_MAX]; returns how many. */

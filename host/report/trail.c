@@ -33,8 +33,8 @@ static double dot(const double a[AXIS_LINEAR_COUNT], const double b[AXIS_LINEAR_
 
 /*
  * With way = point - start, along = way . direction, aside = |way - along direction|: inside when
- * aside <= tolerance and along >= reach - tolerance. Until the path has left the ball of that tolerance about
- * start there is no direction, and everything is inside.
+ * aside <= tolerance and along >= reach - tolerance. Until the path has left the ball of that
+ * tolerance about start there is no direction, and everything is inside.
  */
 static bool strip_holds(struct trail_strip *s, const double way[AXIS_LINEAR_COUNT],
                         double tolerance_mm)
@@ -65,8 +65,9 @@ static bool feeds_differ(const struct trail *t, double a_mm_s, double b_mm_s)
 }
 
 /*
- * May the trail go from the point kept last straight to point? One step always may. Inside the ball about that point
- * only the line counts, so that growing tolerances thin any path, however often it changes.
+ * May the trail go from the point kept last straight to point? One step always may. Inside the ball
+ * about that point only the line counts, so that growing tolerances thin any path, however often it
+ * changes.
  */
 static bool trail_fits(struct trail *t, const struct trail_point *point)
 {
@@ -136,9 +137,10 @@ void trail_finish(struct trail *t)
 }
 
 /*
- * A point and the end of its strip are each within one tolerance of the same ray, and the point at most one tolerance
- * beyond that end: so it is within sqrt(2^2 + 1^2) tolerances of the way drawn. Every coarsening before had half the
- * tolerance of the next, and sqrt(5) (1 + 1/2 + 1/4 + ...) < 5.
+ * A point and the end of its strip are each within one tolerance of the same ray, and the point at
+ * most one tolerance beyond that end: so it is within sqrt(2^2 + 1^2) tolerances of the way drawn.
+ * Every coarsening before had half the tolerance of the next, and sqrt(5) (1 + 1/2 + 1/4 + ...) <
+ * 5.
  */
 double trail_get_error_mm(const struct trail *t)
 {

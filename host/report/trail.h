@@ -1,12 +1,14 @@
 /*
  * The tool path in space, thinned to the points that shape it.
  *
- * A point is kept where the path leaves a straight strip of tolerance_mm about the ray from the point kept before,
- * turns back along it, changes between rapid and feed, changes its line, or changes its feed by more than feed_ratio.
- * When TRAIL_POINTS_MAX are kept, the tolerances double and the kept points are thinned once more (lines then no
- * longer count). Memory is bounded, the result depends on the points alone.
+ * A point is kept where the path leaves a straight strip of tolerance_mm about the ray from the
+ * point kept before, turns back along it, changes between rapid and feed, changes its line, or
+ * changes its feed by more than feed_ratio. When TRAIL_POINTS_MAX are kept, the tolerances double
+ * and the kept points are thinned once more (lines then no longer count). Memory is bounded, the
+ * result depends on the points alone.
  *
- * The idea of the strip is Reumann and Witkam's (1974); here the ray must also be followed forwards.
+ * The idea of the strip is Reumann and Witkam's (1974); here the ray must also be followed
+ * forwards.
  */
 #ifndef TAKT_REPORT_TRAIL_H
 #define TAKT_REPORT_TRAIL_H
@@ -44,7 +46,10 @@ struct trail {
     struct trail_strip strip;
 };
 
-/* feed_max_mm_s: of the machine; it scales feed_floor_mm_s. False: out of memory. trail_close frees it. */
+/*
+ * feed_max_mm_s: of the machine; it scales feed_floor_mm_s. False: out of memory. trail_close frees
+ * it.
+ */
 bool trail_open(struct trail *t, double feed_max_mm_s);
 void trail_close(struct trail *t);
 

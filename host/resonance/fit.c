@@ -1,11 +1,12 @@
 /*
- * Least squares: y = sum of part_m A(hz_m, damping_m), y what the tool is accelerated beside its foot, A what a mode makes of
- * the foot's way (model.h).
+ * Least squares: y = sum of part_m A(hz_m, damping_m), y what the tool is accelerated beside its
+ * foot, A what a mode makes of the foot's way (model.h).
  *
- * A mode is looked for on a grid of frequencies and dampings, with the best part for each; then all numbers of all modes
- * together by Gauss and Newton, in ln hz, ln damping and part. Another mode is there if that lowers n ln(y'y/n) + k ln n of
- * k numbers and n cycles (Schwarz 1978) by more than 2 ln g, g being the places of the grid: the best of g finds that
- * much in noise. Deviations are those of the inverse of the normal matrix times the variance left.
+ * A mode is looked for on a grid of frequencies and dampings, with the best part for each; then all
+ * numbers of all modes together by Gauss and Newton, in ln hz, ln damping and part. Another mode is
+ * there if that lowers n ln(y'y/n) + k ln n of k numbers and n cycles (Schwarz 1978) by more than 2
+ * ln g, g being the places of the grid: the best of g finds that much in noise. Deviations are
+ * those of the inverse of the normal matrix times the variance left.
  */
 #include "resonance/fit.h"
 
@@ -18,7 +19,10 @@
 #define NUMBERS     3 /* of a mode */
 #define NUMBERS_MAX ((unsigned)NUMBERS * VIBRATION_MODES)
 
-/* The grid: from the lowest frequency to this part of a cycle's, each higher by this ratio; and dampings. */
+/*
+ * The grid: from the lowest frequency to this part of a cycle's, each higher by this ratio; and
+ * dampings.
+ */
 #define HZ_LOW     2.0
 #define CYCLE_PART 0.4
 #define HZ_RATIO   1.06

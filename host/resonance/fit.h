@@ -1,5 +1,6 @@
 /*
- * Modes of an axis from what has been measured: how many there are, frequency, damping and part of each, and how sure that is.
+ * Modes of an axis from what has been measured: how many there are, frequency, damping and part of
+ * each, and how sure that is.
  */
 #ifndef TAKT_HOST_RESONANCE_FIT_H
 #define TAKT_HOST_RESONANCE_FIT_H

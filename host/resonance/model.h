@@ -6,7 +6,10 @@
 
 #include "resonance/record.h"
 
-/* The second differences of what a mode of part 1 is away from its foot, by the time squared; at both ends 0. */
+/*
+ * The second differences of what a mode of part 1 is away from its foot, by the time squared; at
+ * both ends 0.
+ */
 void resonance_answer(const struct resonance_record *record, double hz, double damping,
                       double *answer_mm_s2);
 

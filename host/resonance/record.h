@@ -1,5 +1,6 @@
 /*
- * What has been measured of an axis, cycle by cycle: where its drive was, and what an accelerometer at the tool said.
+ * What has been measured of an axis, cycle by cycle: where its drive was, and what an accelerometer
+ * at the tool said.
  */
 #ifndef TAKT_HOST_RESONANCE_RECORD_H
 #define TAKT_HOST_RESONANCE_RECORD_H

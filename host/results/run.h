@@ -1,5 +1,6 @@
 /*
- * A run from its options to its summary, cycle by cycle: what `takt run` and the library are made of.
+ * A run from its options to its summary, cycle by cycle: what `takt run` and the library are made
+ * of.
  *
  *     status = run_open(&run, &options);                       machine, tables, program
  *     if (status == STATUS_DONE)
@@ -46,19 +47,24 @@ struct run {
     struct summary summary;  /* of run_finish */
 };
 
-/* Reads everything the options name; they must outlive the run. STATUS_DONE; else after messages. */
+/*
+ * Reads everything the options name; they must outlive the run. STATUS_DONE; else after messages.
+ */
 enum command_status run_open(struct run *run, const struct options *options);
 /* Checks the program, plans it ahead if that is asked for, boots the drives. Likewise. */
 enum command_status run_prepare(struct run *run);
 
-/* One cycle of the world and of everybody who watches it. False: the bus or the target is gone, or memory is. */
+/*
+ * One cycle of the world and of everybody who watches it. False: the bus or the target is gone, or
+ * memory is.
+ */
 bool run_cycle(struct run *run);
 /* The program has ended or faulted, or --until has come. */
 bool run_is_over(const struct run *run);
 
 /*
- * The ordered end, and the summary. cut: STATUS_DONE where run_is_over, else why the run ends before: it comes to rest
- * first, so that the summary counts the way there.
+ * The ordered end, and the summary. cut: STATUS_DONE where run_is_over, else why the run ends
+ * before: it comes to rest first, so that the summary counts the way there.
  */
 void run_finish(struct run *run, enum command_status cut);
 /* Only the drives' end: nothing is left moving. */

@@ -1,7 +1,8 @@
 /*
  * The files a run leaves: trace, logs of bus and pulses, report, JSON, JUnit, parameters.
  *
- * All are opened before anything moves and put in place together at the end; until then nothing of them can be seen.
+ * All are opened before anything moves and put in place together at the end; until then nothing of
+ * them can be seen.
  */
 #ifndef TAKT_HOST_RUN_OUTPUTS_H
 #define TAKT_HOST_RUN_OUTPUTS_H
@@ -44,8 +45,10 @@ struct run_outputs {
     bool each_cycle;          /* something is to be written every cycle */
 };
 
-/* The paths that the options ask for, without touching any file. False after a message: two are the same, or one is
- * a file that is read. */
+/*
+ * The paths that the options ask for, without touching any file. False after a message: two are the
+ * same, or one is a file that is read.
+ */
 bool run_outputs_plan(struct run_outputs *o, const struct session *session);
 /* True when standard output is one of the files. */
 bool run_outputs_use_stdout(const struct run_outputs *o);
@@ -60,7 +63,10 @@ void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
 bool run_outputs_failed(const struct run_outputs *o);
 /* One of them is not wanted after all. */
 void run_outputs_drop(struct run_outputs *o, enum run_output which);
-/* For the report, before run_outputs_commit: as error_map_json gives it; the text becomes the outputs'. */
+/*
+ * For the report, before run_outputs_commit: as error_map_json gives it; the text becomes the
+ * outputs'.
+ */
 void run_outputs_set_map(struct run_outputs *o, char *map);
 /* The same of what compiled_shares_json gives. */
 void run_outputs_set_shares(struct run_outputs *o, char *shares);

@@ -3,7 +3,10 @@
 #include "base/maths.h"
 #include "cli/axis_unit.h"
 
-/* Above the largest chord error a machine allows: rounding of the planner's and the verifier's formula. */
+/*
+ * Above the largest chord error a machine allows: rounding of the planner's and the verifier's
+ * formula.
+ */
 #define SUMMARY_CHORD_ROOM_MM 1e-6
 
 const char *summary_outcome_name(enum summary_outcome outcome)
@@ -96,7 +99,10 @@ static void check_path(struct summary *summary)
               1.0 / summary->machine->resolution_per_mm + SUMMARY_CHORD_ROOM_MM);
 }
 
-/* After a complete run nothing may be missing; a run that ended early may only not have done what is not there. */
+/*
+ * After a complete run nothing may be missing; a run that ended early may only not have done what
+ * is not there.
+ */
 static void check_blocks(struct summary *summary, const struct summary_source *source)
 {
     double missing = source->verifier->strayed ? 1 : 0;
@@ -137,8 +143,8 @@ static bool is_planned(const struct summary *summary)
 }
 
 /*
- * Predicted and observed; what faults of the buses, and frames that nobody wants or that come by a timer of the drive, have
- * done is no fault of the prediction.
+ * Predicted and observed; what faults of the buses, and frames that nobody wants or that come by a
+ * timer of the drive, have done is no fault of the prediction.
  */
 static void set_responses(struct summary *summary, const struct drive_network *network,
                           const struct drives *drives, unsigned index)

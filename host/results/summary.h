@@ -1,5 +1,6 @@
 /*
- * What a run comes to: figures, checks, and their three forms: JSON (summary.schema.json), JUnit, text.
+ * What a run comes to: figures, checks, and their three forms: JSON (summary.schema.json), JUnit,
+ * text.
  */
 #ifndef TAKT_HOST_SUMMARY_H
 #define TAKT_HOST_SUMMARY_H

@@ -1,4 +1,6 @@
-/* The summary as JSON: the fields and their order are those of README.md and summary.schema.json. */
+/*
+ * The summary as JSON: the fields and their order are those of README.md and summary.schema.json.
+ */
 #include "cli/axis_unit.h"
 #include "results/summary.h"
 #include "results/summary_correction.h"

@@ -31,7 +31,10 @@ void connection_open(struct connection *connection, int socket, const struct mod
                      uint64_t now_ns);
 void connection_close(struct connection *connection);
 
-/* There is something to do: bytes have come (readable), or may be sent. Adds to *answered. False: it is to be closed. */
+/*
+ * There is something to do: bytes have come (readable), or may be sent. Adds to *answered. False:
+ * it is to be closed.
+ */
 bool connection_serve(struct connection *connection, bool readable, uint64_t now_ns,
                       uint64_t *answered);
 

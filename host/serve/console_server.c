@@ -18,7 +18,10 @@
 #include <termios.h>
 #include <unistd.h>
 
-/* How long it sleeps: while a line waits for its answer, and otherwise, to look for alarms and who has come. */
+/*
+ * How long it sleeps: while a line waits for its answer, and otherwise, to look for alarms and who
+ * has come.
+ */
 #define WAITING_MS 1
 #define IDLE_MS    20
 

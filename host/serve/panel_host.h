@@ -1,6 +1,7 @@
 /*
- * The operator's panel behind its servers: a client of the panel for every place of the Modbus server, and for every page
- * in a browser. Servers have threads of their own; the panel is one of them at a time.
+ * The operator's panel behind its servers: a client of the panel for every place of the Modbus
+ * server, and for every page in a browser. Servers have threads of their own; the panel is one of
+ * them at a time.
  */
 #ifndef TAKT_SERVE_PANEL_HOST_H
 #define TAKT_SERVE_PANEL_HOST_H

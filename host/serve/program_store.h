@@ -1,9 +1,10 @@
 /*
- * The program of the service, and the one that is on its way in. In memory; with a path also in a file, which is
- * replaced at once or not at all.
+ * The program of the service, and the one that is on its way in. In memory; with a path also in a
+ * file, which is replaced at once or not at all.
  *
- * The panel's thread brings the new one, the control thread adopts it between two cycles, while the panel waits. A program
- * that is streamed is adopted before its text has come, and read as far as it has, in whole lines.
+ * The panel's thread brings the new one, the control thread adopts it between two cycles, while the
+ * panel waits. A program that is streamed is adopted before its text has come, and read as far as
+ * it has, in whole lines.
  */
 #ifndef TAKT_SERVE_PROGRAM_STORE_H
 #define TAKT_SERVE_PROGRAM_STORE_H

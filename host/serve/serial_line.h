@@ -20,7 +20,10 @@ struct serial_settings {
     enum serial_parity parity;
 };
 
-/* "PATH", "PATH,9600" or "PATH,9600,none"; without them 19200 baud and even parity. False: it is none of these. */
+/*
+ * "PATH", "PATH,9600" or "PATH,9600,none"; without them 19200 baud and even parity. False: it is
+ * none of these.
+ */
 bool serial_settings_read(struct serial_settings *settings, const char *text);
 
 /* 8 data bits, one stop bit (two without parity). -1: errno says why. */

@@ -1,9 +1,10 @@
 /*
- * A Modbus server on TCP, for several clients, and on one serial line. One thread; no client can make it wait for
- * another.
+ * A Modbus server on TCP, for several clients, and on one serial line. One thread; no client can
+ * make it wait for another.
  *
- * libmodbus is not used on this side: its server waits inside modbus_receive for the rest of a frame, so that one client
- * who sends half a request would stop all others, and modbus_reply sleeps half a second over a wrong quantity.
+ * libmodbus is not used on this side: its server waits inside modbus_receive for the rest of a
+ * frame, so that one client who sends half a request would stop all others, and modbus_reply sleeps
+ * half a second over a wrong quantity.
  */
 #ifndef TAKT_SERVE_SERVER_H
 #define TAKT_SERVE_SERVER_H
@@ -60,7 +61,10 @@ struct server {
     atomic_ullong accepted, refused, dropped; /* connections */
 };
 
-/* Opens everything, starts nothing. False: *problem says what the system refuses, until the next call. */
+/*
+ * Opens everything, starts nothing. False: *problem says what the system refuses, until the next
+ * call.
+ */
 bool server_open(struct server *server, const struct server_config *config, const char **problem);
 /* The thread. False: the system has none. */
 bool server_start(struct server *server);

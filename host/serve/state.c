@@ -198,7 +198,9 @@ static bool take_line(struct state *s, const char *line)
     return true;
 }
 
-/* Copies a line with a zero at its end, and steps over it. False: there is none, or it is too long. */
+/*
+ * Copies a line with a zero at its end, and steps over it. False: there is none, or it is too long.
+ */
 static bool next_line(const char **at, size_t *left, char line[LINE_MAX_LENGTH + 1])
 {
     const char *end = memchr(*at, '\n', *left);

@@ -10,8 +10,9 @@
  *     wear TOOL LENGTH TIME
  *     setup X Y Z I J K R X Y Z I J K R set-up of the part, and that of the machine file when it was written
  *
- * mm, rad, s; numbers with as many digits as give the same bits again. Lines of a name that this version does not know are
- * skipped, so a later version may add some; one that changes their meaning raises the number in the first line.
+ * mm, rad, s; numbers with as many digits as give the same bits again. Lines of a name that this
+ * version does not know are skipped, so a later version may add some; one that changes their
+ * meaning raises the number in the first line.
  */
 #ifndef TAKT_SERVE_STATE_H
 #define TAKT_SERVE_STATE_H
@@ -50,7 +51,10 @@ struct state {
 /* The text, to be freed by free(); NULL: out of memory. */
 char *state_write(const struct state *state, size_t *length);
 
-/* False: problem says what is wrong with the text, and *state is of no use. tools and tools_max are set before. */
+/*
+ * False: problem says what is wrong with the text, and *state is of no use. tools and tools_max are
+ * set before.
+ */
 bool state_read(struct state *state, const char *text, size_t length,
                 char problem[STATE_PROBLEM_MAX + 1]);
 

@@ -3,8 +3,9 @@
  *
  *     FOLDER/state-0, FOLDER/state-1      two generations, each with sequence and checksums before its bytes
  *
- * What the store programs is gathered in memory and goes to the disk when its head comes: first the bytes, brought to the
- * disk, then the head, brought to the disk. So a head never counts before what it stands for is there.
+ * What the store programs is gathered in memory and goes to the disk when its head comes: first the
+ * bytes, brought to the disk, then the head, brought to the disk. So a head never counts before
+ * what it stands for is there.
  */
 #ifndef TAKT_SERVE_STATE_DISK_H
 #define TAKT_SERVE_STATE_DISK_H
@@ -33,9 +34,14 @@ struct state_disk {
     int folder;
 };
 
-/* Opens or makes the files in a folder that is there. False: errno says why, and nothing is open. */
+/*
+ * Opens or makes the files in a folder that is there. False: errno says why, and nothing is open.
+ */
 bool state_disk_open(struct state_disk *disk, const char *folder, uint32_t sector_bytes);
-/* The same without files: the mirrors are the caller's to fill, see state_disk_mirror. False: out of memory. */
+/*
+ * The same without files: the mirrors are the caller's to fill, see state_disk_mirror. False: out
+ * of memory.
+ */
 bool state_disk_open_on(struct state_disk *disk, const struct state_disk_ops *ops,
                         uint32_t sector_bytes);
 void state_disk_close(struct state_disk *disk);

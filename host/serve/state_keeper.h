@@ -1,9 +1,11 @@
 /*
- * Keeps a state on the disk, in a thread of its own: the control cycle hands over a copy now and then and never waits.
+ * Keeps a state on the disk, in a thread of its own: the control cycle hands over a copy now and
+ * then and never waits.
  *
  *     offer (control thread)  ->  text  ->  store, of two generations  ->  disk
  *
- * A change is offered within STATE_KEEPER_OFFER_NS; what fails is told once and tried again with the next offer.
+ * A change is offered within STATE_KEEPER_OFFER_NS; what fails is told once and tried again with
+ * the next offer.
  */
 #ifndef TAKT_SERVE_STATE_KEEPER_H
 #define TAKT_SERVE_STATE_KEEPER_H
@@ -19,8 +21,9 @@
 #include <stdint.h>
 
 /*
- * After a power cut a state is at most so old, or as old as the write takes that a change had to wait for, and as long as
- * its own write takes, which was cut: a second, where a write takes half of one.
+ * After a power cut a state is at most so old, or as old as the write takes that a change had to
+ * wait for, and as long as its own write takes, which was cut: a second, where a write takes half
+ * of one.
  */
 #define STATE_KEEPER_OFFER_NS UINT64_C(250000000)
 
@@ -48,12 +51,18 @@ bool state_keeper_open(struct state_keeper *keeper, const char *folder, size_t t
 const char *state_keeper_get(const struct state_keeper *keeper, size_t *length);
 
 bool state_keeper_start(struct state_keeper *keeper);
-/* Control thread: the place for a state, when it is time and the last one has been kept; followed by state_keeper_offer. */
+/*
+ * Control thread: the place for a state, when it is time and the last one has been kept; followed
+ * by state_keeper_offer.
+ */
 struct state *state_keeper_wants(struct state_keeper *keeper, uint64_t now_ns);
 void state_keeper_offer(struct state_keeper *keeper);
 bool state_keeper_has_failed(const struct state_keeper *keeper);
 
-/* Ends the thread after what has been offered; then keeps this last state, and closes. NULL: none. False: not kept. */
+/*
+ * Ends the thread after what has been offered; then keeps this last state, and closes. NULL: none.
+ * False: not kept.
+ */
 bool state_keeper_close(struct state_keeper *keeper, const struct state *last);
 
 /* Writes a state into a store, unless it is what the store has. False: it could not be kept. */

@@ -104,7 +104,10 @@ static bool start(struct panel_line *line, bool *starts)
     return !due || panel_line_set(line, REGISTER_CYCLE_START, 1);
 }
 
-/* Waits until there is room for the next chunk; of a program that nobody has started there never would be. */
+/*
+ * Waits until there is room for the next chunk; of a program that nobody has started there never
+ * would be.
+ */
 static enum command_status wait_for_room(struct panel_line *line, size_t left, bool *starts)
 {
     const int64_t wanted = (int64_t)(left < PANEL_CHUNK_MAX ? left : PANEL_CHUNK_MAX);

@@ -1,5 +1,6 @@
 /*
- * `takt serve` at work: the controller as a service, paced by the wall clock, on its bus, with spindle and panel.
+ * `takt serve` at work: the controller as a service, paced by the wall clock, on its bus, with
+ * spindle and panel.
  *
  *     panel's thread  --- orders --->  exchange  --->  takt_service_order      control thread
  *                     <-- snapshots -            <---  takt_service_cycle  ->  field (bus, drives)
@@ -55,13 +56,16 @@ struct serving {
     bool has_field, has_service, has_exchange, has_server; /* are open */
 };
 
-/* Opens everything the options name, starts nothing. STATUS_DONE, else after messages; serving_close is due. */
+/*
+ * Opens everything the options name, starts nothing. STATUS_DONE, else after messages;
+ * serving_close is due.
+ */
 enum command_status serving_open(struct serving *serving, const struct options *options);
 void serving_close(struct serving *serving);
 
 /*
- * Serves until a signal comes, or the bus log cannot be written, and comes to rest in order. STATUS_DONE;
- * STATUS_INTERRUPTED: a second signal has cut that short; else after a message.
+ * Serves until a signal comes, or the bus log cannot be written, and comes to rest in order.
+ * STATUS_DONE; STATUS_INTERRUPTED: a second signal has cut that short; else after a message.
  */
 enum command_status serving_run(struct serving *serving);
 

@@ -95,7 +95,9 @@ static bool is_loopback(const struct sockaddr *address)
            (IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr) && v6->sin6_addr.s6_addr[12] == 127);
 }
 
-/* Only this computer reaches it. What cannot be found cannot be listened on, which is told later. */
+/*
+ * Only this computer reaches it. What cannot be found cannot be listened on, which is told later.
+ */
 static bool is_private(const char *host)
 {
     const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
@@ -111,7 +113,10 @@ static bool is_private(const char *host)
     return private;
 }
 
-/* Whoever reaches the panel moves the machine: beyond this computer somebody has to say that this is meant. */
+/*
+ * Whoever reaches the panel moves the machine: beyond this computer somebody has to say that this
+ * is meant.
+ */
 static bool check_access(const struct session *session, const char *address,
                          const struct allow_list *allowed)
 {

@@ -1,5 +1,6 @@
 /*
- * What the options of `takt serve` and the machine file's section [panel] say of the panel's server.
+ * What the options of `takt serve` and the machine file's section [panel] say of the panel's
+ * server.
  */
 #ifndef TAKT_HOST_SERVING_OPTIONS_H
 #define TAKT_HOST_SERVING_OPTIONS_H
@@ -20,7 +21,10 @@ struct serving_options {
     struct serial_settings serial;
 };
 
-/* Fills the parts of *config that options decide, the serial line opened. options must stay. False after a message. */
+/*
+ * Fills the parts of *config that options decide, the serial line opened. options must stay. False
+ * after a message.
+ */
 bool serving_options_read(struct serving_options *options, const struct session *session,
                           struct server_config *config);
 

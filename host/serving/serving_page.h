@@ -1,6 +1,6 @@
 /*
- * The page in the browser beside `takt serve`: what it is told of the machine, and what the control thread does for it
- * between two cycles.
+ * The page in the browser beside `takt serve`: what it is told of the machine, and what the control
+ * thread does for it between two cycles.
  */
 #ifndef TAKT_HOST_SERVING_PAGE_H
 #define TAKT_HOST_SERVING_PAGE_H

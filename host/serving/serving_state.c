@@ -29,7 +29,10 @@ static void add_machine(char *path, size_t room, const char *name)
     path[at] = '\0';
 }
 
-/* $XDG_STATE_HOME, else ~/.local/state; in it takt/MACHINE. False: nobody says where the user's files are. */
+/*
+ * $XDG_STATE_HOME, else ~/.local/state; in it takt/MACHINE. False: nobody says where the user's
+ * files are.
+ */
 static bool find_folder(struct serving_state *st, const char *machine)
 {
     const char *state = getenv("XDG_STATE_HOME");
@@ -111,7 +114,9 @@ static void take_parameters(struct serving_state *st, struct session *session)
                                 st->folder);
 }
 
-/* What does not fit this machine is left alone: nothing is overwritten that somebody may want back. */
+/*
+ * What does not fit this machine is left alone: nothing is overwritten that somebody may want back.
+ */
 static enum command_status take_state(struct serving_state *st, struct session *session)
 {
     char problem[STATE_PROBLEM_MAX + 1];

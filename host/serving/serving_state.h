@@ -1,6 +1,7 @@
 /*
- * `takt serve --state`: what the service keeps over its end, a crash and a power cut, in a folder of its own: work offsets
- * and other parameters, tools with their wear, the program and the line where it was cut short.
+ * `takt serve --state`: what the service keeps over its end, a crash and a power cut, in a folder
+ * of its own: work offsets and other parameters, tools with their wear, the program and the line
+ * where it was cut short.
  *
  * What a file says counts again when the file has changed since (its tools, its parameters).
  */
@@ -30,7 +31,10 @@ struct serving_state {
     size_t tools_count;
 };
 
-/* Opens the folder of --state and takes from it what belongs into the session. STATUS_DONE; else after a message. */
+/*
+ * Opens the folder of --state and takes from it what belongs into the session. STATUS_DONE; else
+ * after a message.
+ */
 enum command_status serving_state_open(struct serving_state *state, struct session *session);
 /* Where programs of panels are kept; NULL: nowhere. */
 const char *serving_state_get_program(const struct serving_state *state);

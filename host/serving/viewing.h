@@ -1,6 +1,7 @@
 /*
- * A trace played back for the page in the browser: the registers and setpoints of a machine that is not there. Start, hold,
- * resume, reset, START_LINE and the feed override count for the playing; all other orders are refused.
+ * A trace played back for the page in the browser: the registers and setpoints of a machine that is
+ * not there. Start, hold, resume, reset, START_LINE and the feed override count for the playing;
+ * all other orders are refused.
  *
  *     viewing_order      what pages want
  *     viewing_cycle      one row of the trace later, or as many as the speed says

@@ -3,8 +3,9 @@
  *
  *     LINE KIND WORDS
  *
- * LINE is the line of the part program, KIND one of those below. Numbers have six decimals. Positions are machine
- * coordinates in mm, of A B C in degrees; a motion names every axis the machine has, moved or not.
+ * LINE is the line of the part program, KIND one of those below. Numbers have six decimals.
+ * Positions are machine coordinates in mm, of A B C in degrees; a motion names every axis the
+ * machine has, moved or not.
  *
  *     rapid       X Y Z A B C
  *     feed        X Y Z A B C  F         F is mm/min, degrees/min when only A B C move
@@ -53,9 +54,9 @@
 bool canon_is_rotary(const struct move *move, const struct point *at);
 
 /*
- * Writes move without a line end, zero-terminated, into text[CANON_TEXT_MAX]; returns its length. axes: bit i set:
- * the machine has axis i. at: machine position the move starts from; the caller follows it, by move->end after
- * every motion.
+ * Writes move without a line end, zero-terminated, into text[CANON_TEXT_MAX]; returns its length.
+ * axes: bit i set: the machine has axis i. at: machine position the move starts from; the caller
+ * follows it, by move->end after every motion.
  */
 size_t canon_format(const struct move *move, unsigned axes, const struct point *at, char *text);
 

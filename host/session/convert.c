@@ -11,7 +11,10 @@
 #define PLACES      6
 #define PLACES_INCH 8
 #define MM_PER_INCH 25.4
-/* An arc's end may be so far off its circle (firmware/program/circular.c), and its centre must be so far from its start. */
+/*
+ * An arc's end may be so far off its circle (firmware/program/circular.c), and its centre must be
+ * so far from its start.
+ */
 #define OFF_CIRCLE_MM      0.028
 #define CENTRE_MIN_MM      0.0013
 #define SECONDS_PER_MINUTE 60.0
@@ -195,7 +198,10 @@ static double off_circle(const struct convert *c, const struct move *m, const en
     return maths_abs(*radius_mm - maths_sqrt(squared[1]));
 }
 
-/* R says which of two arcs: above 0 the one of less than half a turn, whose centre is on the side it turns to. */
+/*
+ * R says which of two arcs: above 0 the one of less than half a turn, whose centre is on the side
+ * it turns to.
+ */
 static void put_radius(const struct convert *c, const struct move *m, const enum axis axis[2],
                        double radius_mm)
 {
@@ -218,7 +224,10 @@ static void put_centre(const struct convert *c, const struct move *m, const enum
         put_word(c, (char)('I' + (int)axis[i]), (m->centre_mm[i] - c->at.at[axis[i]]) / c->unit_mm);
 }
 
-/* G2, G3 and, with the base circle's radius, G2.2, G3.2. Inches allow an end that is further off its circle. */
+/*
+ * G2, G3 and, with the base circle's radius, G2.2, G3.2. Inches allow an end that is further off
+ * its circle.
+ */
 static const char *curved(struct convert *c, const struct move *m)
 {
     const bool clockwise = m->kind == MOVE_ARC_CW || m->kind == MOVE_INVOLUTE_CW;
@@ -341,7 +350,10 @@ static void input(struct convert *c, const struct move *m)
     put(c, "\n");
 }
 
-/* What goes off takes everything with it. The last word gives the state that is wanted, even if it is there already. */
+/*
+ * What goes off takes everything with it. The last word gives the state that is wanted, even if it
+ * is there already.
+ */
 static void coolant(struct convert *c, const struct move *m)
 {
     const bool both = m->mist && m->flood;

@@ -1,6 +1,6 @@
 /*
- * A program as another controller's: its canonical moves in the words of a dialect. Reading the result in that dialect, from the
- * same start and without offsets, gives the same moves again.
+ * A program as another controller's: its canonical moves in the words of a dialect. Reading the
+ * result in that dialect, from the same start and without offsets, gives the same moves again.
  */
 #ifndef TAKT_HOST_CONVERT_H
 #define TAKT_HOST_CONVERT_H

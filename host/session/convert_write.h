@@ -11,7 +11,10 @@
 /* False after a message: it is none that can be written. */
 bool convert_read_dialect(const char *name, enum dialect *dialect);
 
-/* STATUS_DONE; STATUS_INPUT after a message: the dialect has no words for a move; STATUS_INTERRUPTED. */
+/*
+ * STATUS_DONE; STATUS_INPUT after a message: the dialect has no words for a move;
+ * STATUS_INTERRUPTED.
+ */
 enum command_status convert_write(const struct session *session, FILE *out, enum dialect dialect);
 
 #endif

@@ -66,7 +66,10 @@ static const char *end_name(enum junction_kind end)
 /* Places on a smoothed piece at which its length is looked at. */
 #define PIECE_PARTS 8
 
-/* |dx/ds| over linear axes, or rotary ones when only those move: 1 but for a smoothed piece, whose s is nominal time. */
+/*
+ * |dx/ds| over linear axes, or rotary ones when only those move: 1 but for a smoothed piece, whose
+ * s is nominal time.
+ */
 static double stretch_at(const struct block *block, double part)
 {
     const int from = block->rotary ? AXIS_LINEAR_COUNT : 0;

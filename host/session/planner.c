@@ -20,8 +20,8 @@ struct planner {
     uint64_t cycles_before;       /* made before the last one */
     struct planned_block planned; /* the block being passed */
     double entered_s;             /* when its start was passed */
-    double *
-        program_mm_s; /* of each motion by its number: as planned_block has it, but for what turns */
+    /* of each motion by its number: as planned_block has it, but for what turns */
+    double *program_mm_s;
     size_t room;
     bool failed; /* out of memory */
 };
@@ -140,8 +140,8 @@ static double path_feed(const struct planner *p)
 }
 
 /*
- * When the end of a block was passed: within the last cycle, as if the setpoint went evenly; a stop and a wait are left
- * as a cycle begins.
+ * When the end of a block was passed: within the last cycle, as if the setpoint went evenly; a stop
+ * and a wait are left as a cycle begins.
  */
 static double passed_at(const struct planner *p, const struct block *block)
 {

@@ -1,6 +1,6 @@
 /*
- * Planning without a machine: the program through the same path, ceiling and motion that the controller uses, in virtual
- * time, without drives.
+ * Planning without a machine: the program through the same path, ceiling and motion that the
+ * controller uses, in virtual time, without drives.
  */
 #ifndef TAKT_HOST_PLANNER_H
 #define TAKT_HOST_PLANNER_H
@@ -20,8 +20,8 @@ struct planned_block {
     double feed_end_mm_s;
     double
         path_feed_mm_s; /* likewise the highest, by the path: a smoothed one counts nominal time */
-    double
-        program_mm_s; /* F of the program, of a motion of linear axes; 0: a rapid, a feed per revolution, none */
+    /* F of the program, of a motion of linear axes; 0: a rapid, a feed per revolution, none */
+    double program_mm_s;
     double time_s;
     enum governor governor;
 };
@@ -35,12 +35,17 @@ struct planner_listener {
     void *context;
     /* Hears of every block, in order. */
     void (*take)(void *context, const struct planned_block *planned);
-    /* NULL, or asked in every cycle: is more of the program wanted? planned has the feeds so far of the block being passed. */
+    /*
+     * NULL, or asked in every cycle: is more of the program wanted? planned has the feeds so far of
+     * the block being passed.
+     */
     bool (*wants_more)(void *context, const struct planned_block *planned);
 };
 
-/* Plans the program. STATUS_DONE, STATUS_FAILED or STATUS_ENVIRONMENT after a message, STATUS_INTERRUPTED. The program has
- * been checked. */
+/*
+ * Plans the program. STATUS_DONE, STATUS_FAILED or STATUS_ENVIRONMENT after a message,
+ * STATUS_INTERRUPTED. The program has been checked.
+ */
 enum command_status planner_walk(const struct session *s, const struct planner_listener *listener,
                                  struct planner_totals *totals);
 

@@ -1,6 +1,7 @@
 /*
- * A part program as it is found: of another dialect it is translated, codes that the machine file declares become what it says,
- * and subroutines that lie in files of their own are brought in behind it.
+ * A part program as it is found: of another dialect it is translated, codes that the machine file
+ * declares become what it says, and subroutines that lie in files of their own are brought in
+ * behind it.
  */
 #ifndef TAKT_HOST_PROGRAM_FRONT_H
 #define TAKT_HOST_PROGRAM_FRONT_H
@@ -23,7 +24,9 @@ struct program_front {
 /* Makes of an opened text what is to be read. False after a message. */
 bool program_front_prepare(const struct program_front *front, struct program_text *text);
 
-/* A program and what belongs to it as one text, for those who keep it whole. False after a message. */
+/*
+ * A program and what belongs to it as one text, for those who keep it whole. False after a message.
+ */
 bool program_front_read(const struct program_front *front, const char *path, struct text *text);
 
 #endif

@@ -1,6 +1,7 @@
 /*
- * What every command on a part program begins with: the machine, the program's text, tools and parameters, and the
- * first reading that finds all errors before anything moves or any file is written.
+ * What every command on a part program begins with: the machine, the program's text, tools and
+ * parameters, and the first reading that finds all errors before anything moves or any file is
+ * written.
  */
 #ifndef TAKT_HOST_SESSION_H
 #define TAKT_HOST_SESSION_H
@@ -36,8 +37,10 @@ struct session {
     const struct compiled *compiled;      /* the program, planned ahead; NULL: planned as it runs */
 };
 
-/* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;
- * session_close is due in either case. */
+/*
+ * Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT
+ * after messages; session_close is due in either case.
+ */
 enum command_status session_open(struct session *s, const struct options *options);
 /* The same with a program that is in memory; name is its path. */
 enum command_status session_open_text(struct session *s, const struct options *options,
@@ -46,7 +49,10 @@ enum command_status session_open_text(struct session *s, const struct options *o
 enum command_status session_open_machine(struct session *s, const struct options *options);
 void session_close(struct session *s);
 
-/* One reading of the program: struct program and what belongs to it. It must not be moved once begun. */
+/*
+ * One reading of the program: struct program and what belongs to it. It must not be moved once
+ * begun.
+ */
 struct session_reading {
     struct program program;
     struct cutter_compensation offset;
@@ -72,8 +78,8 @@ struct session_totals {
 };
 
 /*
- * Reads the whole program, prints up to errors_max errors and the first warnings. STATUS_DONE, STATUS_INPUT when there was
- * an error, STATUS_INTERRUPTED.
+ * Reads the whole program, prints up to errors_max errors and the first warnings. STATUS_DONE,
+ * STATUS_INPUT when there was an error, STATUS_INTERRUPTED.
  */
 enum command_status session_check(const struct session *s, unsigned errors_max,
                                   struct session_totals *totals);

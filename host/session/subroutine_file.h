@@ -10,8 +10,8 @@
 #include <stddef.h>
 
 /*
- * label: <name>, or a number without zeros before it. It is looked for beside the program, then in the folders of
- * --subroutines. False: there is no such file.
+ * label: <name>, or a number without zeros before it. It is looked for beside the program, then in
+ * the folders of --subroutines. False: there is no such file.
  */
 bool subroutine_file_find(const struct program_front *front, const char *program, const char *label,
                           char *path, size_t size);

@@ -6,7 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Return height, reference, safety above it, depth, depth below the reference; then a dwell, or the first peck and the rest. */
+/*
+ * Return height, reference, safety above it, depth, depth below the reference; then a dwell, or the
+ * first peck and the rest.
+ */
 static void drill(struct scan *s, const char *name, char text[TRANSLATE_CALL_MAX])
 {
     char a[SCAN_ARGUMENTS][48] = {{0}};
@@ -76,7 +79,10 @@ bool siemens_cycle(struct scan *s, const char *name)
     return true;
 }
 
-/* With MCALL a place is a hole, also one that a rotary axis leads to: the cycle itself has no words for it. */
+/*
+ * With MCALL a place is a hole, also one that a rotary axis leads to: the cycle itself has no words
+ * for it.
+ */
 void siemens_drill(struct scan *s)
 {
     struct translator *t = s->t;

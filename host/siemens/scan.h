@@ -49,7 +49,10 @@ bool scan_keyword(struct scan *s, const char *name);
 void scan_assign(struct scan *s, const char *name);
 /* L100, which a line may have beside other words: it is called behind them. False: NAME is none. */
 bool siemens_call(struct scan *s, char *name);
-/* CYCLE81 to CYCLE83 here, or from the next line on (MCALL), where each line that moves is then a hole. False: it is another word. */
+/*
+ * CYCLE81 to CYCLE83 here, or from the next line on (MCALL), where each line that moves is then a
+ * hole. False: it is another word.
+ */
 bool siemens_cycle(struct scan *s, const char *name);
 void siemens_drill(struct scan *s);
 /* The words of the rest of the line. */

@@ -1,5 +1,6 @@
 /*
- * The language of Siemens' controllers, before the table of differences, its values and words; flow and orders are in flow.c, cycles in cycles.c: what it says in words and brackets.
+ * The language of Siemens' controllers, before the table of differences, its values and words; flow
+ * and orders are in flow.c, cycles in cycles.c: what it says in words and brackets.
  *
  *     X=R1+2*(R2-1) CR=5 TURN=2       X[#101+2*[#102-1]] R5 P3
  *     R1=5 R2=R1*2                    #101=5, #102=[#101*2]
@@ -264,7 +265,10 @@ static const char *letter_of(const char *name)
     return name[1] == '\0' ? name : NULL;
 }
 
-/* R1=5 R2=R1 come one after the other: a line of its own for each, behind words that stand before it. */
+/*
+ * R1=5 R2=R1 come one after the other: a line of its own for each, behind words that stand before
+ * it.
+ */
 void scan_assign(struct scan *s, const char *name)
 {
     struct translator *t = s->t;

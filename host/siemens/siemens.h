@@ -1,5 +1,6 @@
 /*
- * The language of Siemens' controllers, line by line, into what the rest of a translation understands.
+ * The language of Siemens' controllers, line by line, into what the rest of a translation
+ * understands.
  */
 #ifndef TAKT_HOST_SIEMENS_H
 #define TAKT_HOST_SIEMENS_H

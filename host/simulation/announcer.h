@@ -1,8 +1,9 @@
 /*
- * What a program says in its comments while it runs: messages to the operator, and lines of its log files.
+ * What a program says in its comments while it runs: messages to the operator, and lines of its log
+ * files.
  *
- * Messages come when their line is read, which is before what stands in front of it has been cut: reading is ahead of the
- * axes, and stops at M66 and G38 alone.
+ * Messages come when their line is read, which is before what stands in front of it has been cut:
+ * reading is ahead of the axes, and stops at M66 and G38 alone.
  */
 #ifndef TAKT_HOST_ANNOUNCER_H
 #define TAKT_HOST_ANNOUNCER_H

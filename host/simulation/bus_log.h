@@ -1,6 +1,7 @@
 /*
- * Log of a bus, as candump -L writes it, for commands that run until they are told to end: written straight into its
- * file, at least once a second. (`takt run` writes its log aside and shows it when it is whole: run_outputs.h.)
+ * Log of a bus, as candump -L writes it, for commands that run until they are told to end: written
+ * straight into its file, at least once a second. (`takt run` writes its log aside and shows it
+ * when it is whole: run_outputs.h.)
  */
 #ifndef TAKT_HOST_BUS_LOG_H
 #define TAKT_HOST_BUS_LOG_H
@@ -23,7 +24,10 @@ struct bus_log {
     struct frame_buffer frames;
 };
 
-/* path: "-" is standard output; NULL: none, and everything below does nothing. False after a message. */
+/*
+ * path: "-" is standard output; NULL: none, and everything below does nothing. False after a
+ * message.
+ */
 bool bus_log_open(struct bus_log *log, const char *path);
 
 /* What is logged: one of these. */
@@ -36,7 +40,10 @@ void bus_log_keep(struct bus_log *log);
 /* A write has failed: the disk is full, or the reader gone. */
 bool bus_log_has_failed(const struct bus_log *log);
 
-/* False after a message: not everything could be written; a file then ends with the last line that is whole. */
+/*
+ * False after a message: not everything could be written; a file then ends with the last line that
+ * is whole.
+ */
 bool bus_log_close(struct bus_log *log);
 
 #endif

@@ -50,8 +50,8 @@ static bool has_between(const struct bus_plan *plan, unsigned lowest, unsigned h
 }
 
 /*
- * One of them comes in a cycle. As it may be any, it stands where it delays most, and, if others are between, also where
- * it is delayed most.
+ * One of them comes in a cycle. As it may be any, it stands where it delays most, and, if others
+ * are between, also where it is delayed most.
  */
 static void add_errors(struct bus_plan *plan)
 {

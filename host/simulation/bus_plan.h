@@ -13,9 +13,9 @@
 #include <stdbool.h>
 
 /*
- * SYNC, the PDOs of drives and I/O nodes in every cycle; and one TPDO2 and one heartbeat, which nodes send in turns, or a
- * guarding frame and its answer. Where touch probes have been used there is a request and its answer, too; what has to wait
- * for these may be without a bound.
+ * SYNC, the PDOs of drives and I/O nodes in every cycle; and one TPDO2 and one heartbeat, which
+ * nodes send in turns, or a guarding frame and its answer. Where touch probes have been used there
+ * is a request and its answer, too; what has to wait for these may be without a bound.
  */
 #define BUS_PLAN_MAX (7 + DRIVES_CYCLE_PDOS_MAX)
 

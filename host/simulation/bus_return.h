@@ -1,6 +1,7 @@
 /*
- * The way back to a bus that is gone: it is opened again and again, in a thread of its own, since a server that does not
- * answer takes seconds. Between two attempts lies twice the time of the one before, up to BUS_RETURN_LONGEST_NS.
+ * The way back to a bus that is gone: it is opened again and again, in a thread of its own, since a
+ * server that does not answer takes seconds. Between two attempts lies twice the time of the one
+ * before, up to BUS_RETURN_LONGEST_NS.
  */
 #ifndef TAKT_HOST_BUS_RETURN_H
 #define TAKT_HOST_BUS_RETURN_H
@@ -30,7 +31,10 @@ struct bus_return {
 
 void bus_return_init(struct bus_return *way, const char *spec, const struct link_config *config);
 
-/* Now and again, with the time of link_clock_ns: the bus once it is open, the caller's from then on. NULL: not yet. */
+/*
+ * Now and again, with the time of link_clock_ns: the bus once it is open, the caller's from then
+ * on. NULL: not yet.
+ */
 struct link *bus_return_look(struct bus_return *way, uint64_t now_ns);
 
 /* Gives it up; waits for an attempt that is under way. */

@@ -1,6 +1,7 @@
 /*
- * What position-error correction did in a run: the largest correction of each axis, and what following it cost in
- * velocity, acceleration and jerk, by differences of what was added to the setpoints.
+ * What position-error correction did in a run: the largest correction of each axis, and what
+ * following it cost in velocity, acceleration and jerk, by differences of what was added to the
+ * setpoints.
  */
 #ifndef TAKT_HOST_CORRECTION_WATCH_H
 #define TAKT_HOST_CORRECTION_WATCH_H

@@ -6,7 +6,9 @@
 
 #include "controller/controller.h"
 
-/* Feed along the path in the last cycle, if it was one that cuts: 0 in rapids and between programs. */
+/*
+ * Feed along the path in the last cycle, if it was one that cuts: 0 in rapids and between programs.
+ */
 double cutting_feed_mm_s(const struct controller *controller);
 
 #endif

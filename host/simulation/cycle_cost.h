@@ -1,6 +1,6 @@
 /*
- * Duration of the firmware's control cycle, by the clock, of one in CYCLE_COST_EVERY cycles, because reading the clock
- * takes longer than some of what it would measure.
+ * Duration of the firmware's control cycle, by the clock, of one in CYCLE_COST_EVERY cycles,
+ * because reading the clock takes longer than some of what it would measure.
  */
 #ifndef TAKT_HOST_CYCLE_COST_H
 #define TAKT_HOST_CYCLE_COST_H

@@ -1,6 +1,6 @@
 /*
- * The drives of a machine as images in QEMU, one a drive: --drives m4f of takt run and takt serve, --target m4f of takt
- * drives (target/drive_image.h).
+ * The drives of a machine as images in QEMU, one a drive: --drives m4f of takt run and takt serve,
+ * --target m4f of takt drives (target/drive_image.h).
  */
 #ifndef TAKT_HOST_DRIVE_IMAGES_H
 #define TAKT_HOST_DRIVE_IMAGES_H
@@ -24,14 +24,17 @@ struct drive_images {
 };
 
 /*
- * Starts QEMU for every drive of the configuration with a motor, and has it run beside the one here. False after a message:
- * it cannot be; drive_images_close is due in either case.
+ * Starts QEMU for every drive of the configuration with a motor, and has it run beside the one
+ * here. False after a message: it cannot be; drive_images_close is due in either case.
  */
 bool drive_images_open(struct drive_images *images, const char *name, const char *path,
                        struct virtual_drives_config *drives);
 void drive_images_close(struct drive_images *images);
 
-/* An image has ended, or does another thing than the drive here: what, until the next call. NULL: none. */
+/*
+ * An image has ended, or does another thing than the drive here: what, until the next call. NULL:
+ * none.
+ */
 const char *drive_images_problem(struct drive_images *images);
 
 /* Frames and torques that were not those of the drives here, to the bit. */

@@ -2,8 +2,8 @@
  * What a controller is connected to: CAN buses and the drives on them.
  *
  * Buses and drives are virtual and inside this process (virtual time: as fast as it goes), or
- * outside: then a cycle lasts until all drives have answered (simulation/lockstep.h). Either may be paced
- * by the wall clock instead.
+ * outside: then a cycle lasts until all drives have answered (simulation/lockstep.h). Either may be
+ * paced by the wall clock instead.
  */
 #ifndef TAKT_HOST_DRIVE_NETWORK_H
 #define TAKT_HOST_DRIVE_NETWORK_H
@@ -84,7 +84,10 @@ bool drive_network_next_address(const char **list, char address[DRIVE_NETWORK_AD
 /* Buses and drives are not in this process. */
 bool drive_network_is_outside(const struct drive_network_options *options);
 
-/* The drives boot, or are there. network: zeros. STATUS_DONE; else after a message, and nothing is open. */
+/*
+ * The drives boot, or are there. network: zeros. STATUS_DONE; else after a message, and nothing is
+ * open.
+ */
 enum command_status drive_network_open(struct drive_network *network,
                                        const struct machine_setup *setup,
                                        const struct drive_network_options *options);
@@ -94,8 +97,8 @@ void drive_network_close(struct drive_network *network);
 void drive_network_watch_drives(struct drive_network *network, const struct drives *drives);
 
 /*
- * Faults that join those of the script while drives inside run; first: the first new one of it. The script must stay. False
- * after a message: the bus can hold no more.
+ * Faults that join those of the script while drives inside run; first: the first new one of it. The
+ * script must stay. False after a message: the bus can hold no more.
  */
 bool drive_network_add_faults(struct drive_network *network, const struct inject *script,
                               unsigned first);
@@ -106,8 +109,8 @@ struct can_buses drive_network_get_port(struct drive_network *network);
 struct step_port drive_network_get_step_port(struct drive_network *network);
 
 /*
- * The controller has done its part of a cycle: frames travel, drives move. False: an outside bus is gone, see
- * drive_network_get_problem; if it returns, cycles go on meanwhile.
+ * The controller has done its part of a cycle: frames travel, drives move. False: an outside bus is
+ * gone, see drive_network_get_problem; if it returns, cycles go on meanwhile.
  */
 bool drive_network_end_cycle(struct drive_network *network);
 
@@ -115,8 +118,8 @@ bool drive_network_end_cycle(struct drive_network *network);
 bool drive_network_is_lost(const struct drive_network *network);
 
 /*
- * Where what the drives inside move stands, play and errors of screws and steps that were missed included; mm, rad. Axes without a
- * drive: 0.
+ * Where what the drives inside move stands, play and errors of screws and steps that were missed
+ * included; mm, rad. Axes without a drive: 0.
  */
 void drive_network_get_axes(const struct drive_network *network, const struct machine *machine,
                             struct point *at);
@@ -127,7 +130,10 @@ unsigned drive_network_get_lost_bus(const struct drive_network *network);
 /* What an outside bus, or an image of a drive, died of; NULL: it has not. */
 const char *drive_network_get_problem(struct drive_network *network);
 
-/* Every frame on any bus from now on: of buses inside by frame_buffer_write, of others with the time since 1970. */
+/*
+ * Every frame on any bus from now on: of buses inside by frame_buffer_write, of others with the
+ * time since 1970.
+ */
 void drive_network_log(struct drive_network *network, struct frame_buffer *frames,
                        struct candump *log);
 
@@ -140,8 +146,8 @@ bool drive_network_is_sound(const struct drive_network *network);
 
 uint64_t drive_network_get_frames(const struct drive_network *network, unsigned bus);
 /*
- * Percent of the cycles' time; of an outside bus: as if its frames took what the machine's bit rates
- * say.
+ * Percent of the cycles' time; of an outside bus: as if its frames took what the machine's bit
+ * rates say.
  */
 double drive_network_get_load_percent(const struct drive_network *network, unsigned bus);
 /* Load of the bus that has the most. */

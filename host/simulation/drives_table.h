@@ -1,6 +1,6 @@
 /*
- * What the drives of a machine would not have, for people: what the start has given up and what follows from that, and
- * what helps after a fault of a drive.
+ * What the drives of a machine would not have, for people: what the start has given up and what
+ * follows from that, and what helps after a fault of a drive.
  */
 #ifndef TAKT_HOST_DRIVES_TABLE_H
 #define TAKT_HOST_DRIVES_TABLE_H

@@ -5,8 +5,8 @@
 #include "controller/restart.h"
 
 /*
- * Two controlwords for each of six drives, one drive a cycle in turn, and for each the time of a report; several times over
- * for frames that are lost. A drive that does not follow then stays off.
+ * Two controlwords for each of six drives, one drive a cycle in turn, and for each the time of a
+ * report; several times over for frames that are lost. A drive that does not follow then stays off.
  */
 #define SWITCHING_CYCLES_MAX 100
 

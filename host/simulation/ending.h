@@ -1,10 +1,11 @@
 /*
- * The ordered end, the same for every way out: the program's end, a signal, a bus or a file that fails.
+ * The ordered end, the same for every way out: the program's end, a signal, a bus or a file that
+ * fails.
  *
  *     hold on the path -> quick stop of every drive -> spindle and coolant off -> drives off, or "switched on"
  *
- * The caller goes on with its cycles meanwhile. Drives do not depend on it: without a controller they stop by themselves
- * (heartbeat, firmware/drive).
+ * The caller goes on with its cycles meanwhile. Drives do not depend on it: without a controller
+ * they stop by themselves (heartbeat, firmware/drive).
  */
 #ifndef TAKT_HOST_ENDING_H
 #define TAKT_HOST_ENDING_H
@@ -29,7 +30,10 @@ struct ending {
 void ending_ask(struct ending *ending, struct controller *c, enum ending_way way);
 /* The way that the signals so far ask for. */
 enum ending_way ending_by_signals(void);
-/* After every cycle since then. True: the axes stand, and no drive is enabled as far as it can be reached. */
+/*
+ * After every cycle since then. True: the axes stand, and no drive is enabled as far as it can be
+ * reached.
+ */
 bool ending_is_over(struct ending *ending, struct controller *c);
 
 #endif

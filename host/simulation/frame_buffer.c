@@ -23,7 +23,10 @@ void frame_buffer_attach(struct frame_buffer *buffer, struct bus bus[], unsigned
     }
 }
 
-/* Each bus has told its frames in order, one bus after the other: insertion leaves those of one bus as they are. */
+/*
+ * Each bus has told its frames in order, one bus after the other: insertion leaves those of one bus
+ * as they are.
+ */
 static void sort_by_time(struct frame_buffer *buffer)
 {
     for (unsigned i = 1; i < buffer->count; i++) {

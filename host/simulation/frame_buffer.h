@@ -1,5 +1,6 @@
 /*
- * Frames of one cycle between the bus, which must not be slowed down, and the bus log, whose time is not the run's.
+ * Frames of one cycle between the bus, which must not be slowed down, and the bus log, whose time
+ * is not the run's.
  */
 #ifndef TAKT_HOST_FRAME_BUFFER_H
 #define TAKT_HOST_FRAME_BUFFER_H
@@ -9,7 +10,10 @@
 
 #include <stdint.h>
 
-/* More than the buses can carry in the longest cycle: 10 ms at 1 Mbit/s are 212 frames without data. */
+/*
+ * More than the buses can carry in the longest cycle: 10 ms at 1 Mbit/s are 212 frames without
+ * data.
+ */
 #define FRAME_BUFFER_MAX (256 * CAN_BUSES_MAX)
 
 struct frame_seen {

@@ -58,7 +58,10 @@ struct lockstep {
     char warning[LOCKSTEP_TEXT_MAX + 1];
 };
 
-/* link: open, and usable as long as the lockstep. nodes: of the drives on this bus, which are waited for. */
+/*
+ * link: open, and usable as long as the lockstep. nodes: of the drives on this bus, which are
+ * waited for.
+ */
 void lockstep_init(struct lockstep *lockstep, struct link *link, unsigned bus, uint64_t cycle_ns,
                    const uint8_t nodes[], unsigned count);
 
@@ -69,7 +72,8 @@ void lockstep_set_link(struct lockstep *lockstep, struct link *link);
 struct can_port lockstep_get_port(struct lockstep *lockstep);
 
 /*
- * Waits for the end of the cycle, through signals. False: the bus is gone, link_get_problem says why.
+ * Waits for the end of the cycle, through signals. False: the bus is gone, link_get_problem says
+ * why.
  */
 bool lockstep_end_cycle(struct lockstep *lockstep);
 

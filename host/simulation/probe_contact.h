@@ -1,5 +1,6 @@
 /*
- * What the touch probes of virtual drives meet: the solids of a probe file, where the drives themselves say the axes are.
+ * What the touch probes of virtual drives meet: the solids of a probe file, where the drives
+ * themselves say the axes are.
  */
 #ifndef TAKT_HOST_PROBE_CONTACT_H
 #define TAKT_HOST_PROBE_CONTACT_H
@@ -16,7 +17,10 @@ struct probe_contact {
     struct point at; /* of axes without such a drive */
 };
 
-/* Wires the drives of a machine, by their nodes, to what is in the file; an empty one is met nowhere. */
+/*
+ * Wires the drives of a machine, by their nodes, to what is in the file; an empty one is met
+ * nowhere.
+ */
 void probe_contact_wire(struct probe_contact *contact, const struct virtual_probe *probe,
                         const struct machine *machine, struct virtual_drives *drives);
 

@@ -317,7 +317,9 @@ const struct point *simulation_get_tool(const struct simulation *s)
     return s->tool_point.is_watched ? &s->tool_point.tool : NULL;
 }
 
-/* Drives that boot, or are switched off, are another matter than operation: other frames come then. */
+/*
+ * Drives that boot, or are switched off, are another matter than operation: other frames come then.
+ */
 static void count_responses(struct simulation *s)
 {
     if (!s->has_begun && takt_controller_get_record(&s->controller) != NULL) {

@@ -53,25 +53,35 @@ struct simulation {
 };
 
 /*
- * The drives boot and stand at 0; the program waits for its first cycle. STATUS_DONE; else NULL in *opened and a message.
+ * The drives boot and stand at 0; the program waits for its first cycle. STATUS_DONE; else NULL in
+ * *opened and a message.
  */
 enum command_status simulation_open(const struct session *session, struct simulation **opened);
 void simulation_close(struct simulation *s); /* NULL: nothing */
 
 /*
- * One control cycle of everything. False: an outside bus is gone (drive_network_get_problem), or the target is
- * (its problem).
+ * One control cycle of everything. False: an outside bus is gone (drive_network_get_problem), or
+ * the target is (its problem).
  */
 bool simulation_step(struct simulation *s);
 
-/* The operator turns an override, until the next row of its file. Per cent within the panel's range; else false. */
+/*
+ * The operator turns an override, until the next row of its file. Per cent within the panel's
+ * range; else false.
+ */
 bool simulation_set_overrides(struct simulation *s, double feed_percent, double rapid_percent);
 
-/* Faults join those of --inject: the text of a script, and its name for messages. False after a message: none has. */
+/*
+ * Faults join those of --inject: the text of a script, and its name for messages. False after a
+ * message: none has.
+ */
 bool simulation_add_faults(struct simulation *s, const char *name, const char *bytes,
                            size_t length);
 
-/* Where the tool's point was in it; NULL: drives stand for it, on a machine without errors or with drives outside. */
+/*
+ * Where the tool's point was in it; NULL: drives stand for it, on a machine without errors or with
+ * drives outside.
+ */
 const struct point *simulation_get_tool(const struct simulation *s);
 
 /* What the last cycle did, on the target if there is one; NULL: it was none of the program. */

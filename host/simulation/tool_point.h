@@ -1,6 +1,7 @@
 /*
- * Where the tool's point really is in a run on a machine with errors, or one that swings ([geometry]), and how far from where the program
- * wants it. Only the virtual machine knows; the controller is told no more than a temperature.
+ * Where the tool's point really is in a run on a machine with errors, or one that swings
+ * ([geometry]), and how far from where the program wants it. Only the virtual machine knows; the
+ * controller is told no more than a temperature.
  */
 #ifndef TAKT_HOST_TOOL_POINT_H
 #define TAKT_HOST_TOOL_POINT_H
@@ -52,7 +53,10 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup);
 /* Rows of CSV from now on: where each standstill was wanted, and where the tool's point was. */
 void tool_point_write_rests(struct tool_point *t, FILE *stream);
 
-/* After every cycle. drives: where they have brought the axes; record and segment: of the program cycle, NULL: there was none. */
+/*
+ * After every cycle. drives: where they have brought the axes; record and segment: of the program
+ * cycle, NULL: there was none.
+ */
 void tool_point_follow(struct tool_point *t, const struct point *drives, double time_s,
                        const struct cycle_record *record, const struct block *block);
 

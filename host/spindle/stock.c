@@ -4,7 +4,9 @@
 
 #include <stdbool.h>
 
-/* Where a coordinate lies: between the grid's values number at and at + 1, at this part of the way. */
+/*
+ * Where a coordinate lies: between the grid's values number at and at + 1, at this part of the way.
+ */
 struct place {
     size_t at;
     double part;

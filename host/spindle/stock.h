@@ -4,7 +4,8 @@
  *        top(x, y)  ___.--.__        depth = top(x, y) - z, 0 where the tool is above it
  *     z ───────────▼────────────     top: between the four points of a grid around a place, linear in x and in y
  *
- * Outside of the grid there is none. Cutting does not take it away: a program is to pass each place once.
+ * Outside of the grid there is none. Cutting does not take it away: a program is to pass each place
+ * once.
  */
 #ifndef TAKT_HOST_STOCK_H
 #define TAKT_HOST_STOCK_H

@@ -150,7 +150,9 @@ static enum modbus_exception read_map(void *context, enum modbus_table table, ui
     return MODBUS_GOOD;
 }
 
-/* Bits 1 and 0: 01 stop, 10 run, 00 as before; bits 5 and 4: 01 forward, 10 reverse, 00 as before. */
+/*
+ * Bits 1 and 0: 01 stop, 10 run, 00 as before; bits 5 and 4: 01 forward, 10 reverse, 00 as before.
+ */
 static uint16_t command_of(const struct vfd_registers *r, uint16_t word)
 {
     const bool runs = (word & 3U) == 0 ? r->command != VFD_STOP : (word & 3U) == 2;

@@ -1,7 +1,9 @@
 /*
- * The virtual spindle behind the registers of its frequency converter (vfd/vfd.h), for any Modbus client.
+ * The virtual spindle behind the registers of its frequency converter (vfd/vfd.h), for any Modbus
+ * client.
  *
- * Beside those of the converter there are some of the iron, which a test or a script may set: SPINDLE_CUT and SPINDLE_TRIP.
+ * Beside those of the converter there are some of the iron, which a test or a script may set:
+ * SPINDLE_CUT and SPINDLE_TRIP.
  */
 #ifndef TAKT_SPINDLE_VFD_REGISTERS_H
 #define TAKT_SPINDLE_VFD_REGISTERS_H

@@ -82,8 +82,8 @@ void virtual_spindle_init(struct virtual_spindle *s, const struct virtual_spindl
 }
 
 /*
- * Milling: power = specific force x volume removed a second = k_c a_e a_p v_f, torque = power / angular velocity.
- * (Mean cutting force; DIN 6580 and 6584 name the quantities.)
+ * Milling: power = specific force x volume removed a second = k_c a_e a_p v_f, torque = power /
+ * angular velocity. (Mean cutting force; DIN 6580 and 6584 name the quantities.)
  */
 double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s, double depth_mm)
 {
@@ -116,8 +116,8 @@ static double ramp_step_rpm(const struct virtual_spindle *s, double dt_s, double
 }
 
 /*
- * PI control with the ramp fed forward, M = J (dw/dt + b e) + integral of J b e / T_i, b the bandwidth. The integral
- * stands while the torque is at its limit.
+ * PI control with the ramp fed forward, M = J (dw/dt + b e) + integral of J b e / T_i, b the
+ * bandwidth. The integral stands while the torque is at its limit.
  */
 static double loop_nm(struct virtual_spindle *s, double dt_s, double ramp_rpm)
 {
@@ -134,7 +134,10 @@ static double loop_nm(struct virtual_spindle *s, double dt_s, double ramp_rpm)
     return given_nm;
 }
 
-/* What poles, slots and a toothed belt make of the torque, while it turns: ripple sin(2 pi n angle). */
+/*
+ * What poles, slots and a toothed belt make of the torque, while it turns: ripple sin(2 pi n
+ * angle).
+ */
 static double ripple_nm(const struct virtual_spindle *s)
 {
     const double turns = s->config.ripple_per_revolution * s->angle_rev;
@@ -225,7 +228,9 @@ static bool is_at_speed(const struct virtual_spindle *s, double commanded_rpm)
     return s->trip == VIRTUAL_SPINDLE_GOOD && maths_abs(speed_rpm - commanded_rpm) <= room_rpm;
 }
 
-/* From -1 to 1, the same row of numbers in every run: a linear congruential generator modulo 2^64. */
+/*
+ * From -1 to 1, the same row of numbers in every run: a linear congruential generator modulo 2^64.
+ */
 static double next_noise(struct virtual_spindle *s)
 {
     s->noise = s->noise * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);

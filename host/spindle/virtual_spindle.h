@@ -1,6 +1,6 @@
 /*
- * The virtual spindle: a motor behind a frequency converter, with inertia, friction, a limited torque, an encoder,
- * and the torque that cutting takes.
+ * The virtual spindle: a motor behind a frequency converter, with inertia, friction, a limited
+ * torque, an encoder, and the torque that cutting takes.
  *
  *     commanded speed -> ramp -> speed loop -> limited torque -> motor -> speed, angle -> encoder
  *                                                 ^ friction, cutting torque
@@ -33,8 +33,8 @@ struct virtual_spindle_config {
     /* The cut: what milling takes off. Depth 0: the spindle turns in air. */
     double cut_width_mm; /* radial engagement; >= 0 */
     double cut_depth_mm; /* axial engagement, where no stock says it; >= 0 */
-    double
-        cutting_force_n_per_mm2; /* specific cutting force of the material: steel 2000, aluminium 700; >= 0 */
+    /* specific cutting force of the material: steel 2000, aluminium 700; >= 0 */
+    double cutting_force_n_per_mm2;
 };
 
 /* What made it switch off: the numbers a Delta VFD-B shows in register 2100. */
@@ -68,17 +68,23 @@ const char *virtual_spindle_check(const struct virtual_spindle_config *config);
 /* config has passed virtual_spindle_check. It stands still at angle 0. */
 void virtual_spindle_init(struct virtual_spindle *s, const struct virtual_spindle_config *config);
 
-/* Torque that cutting takes at a feed along the path and a depth, N m, >= 0; 0 when the spindle stands. */
+/*
+ * Torque that cutting takes at a feed along the path and a depth, N m, >= 0; 0 when the spindle
+ * stands.
+ */
 double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s, double depth_mm);
 
 /*
- * The next dt_s seconds: dt_s > 0, a control cycle. commanded_rpm: signed, positive clockwise; 0: stop. load_nm:
- * torque against the motion, >= 0. Returns what the converter and the encoder report at the end of them.
+ * The next dt_s seconds: dt_s > 0, a control cycle. commanded_rpm: signed, positive clockwise; 0:
+ * stop. load_nm: torque against the motion, >= 0. Returns what the converter and the encoder report
+ * at the end of them.
  */
 struct spindle_feedback virtual_spindle_step(struct virtual_spindle *s, double dt_s,
                                              double commanded_rpm, double load_nm);
 
-/* A fault: the output is switched off, the rotor runs out. VIRTUAL_SPINDLE_GOOD acknowledges one. */
+/*
+ * A fault: the output is switched off, the rotor runs out. VIRTUAL_SPINDLE_GOOD acknowledges one.
+ */
 void virtual_spindle_set_trip(struct virtual_spindle *s, enum virtual_spindle_trip trip);
 
 #endif

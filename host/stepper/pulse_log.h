@@ -1,12 +1,14 @@
 /*
- * Log of the pulses of step drives, for viewers of logic analysers: every edge at its nanosecond since power-on.
+ * Log of the pulses of step drives, for viewers of logic analysers: every edge at its nanosecond
+ * since power-on.
  *
  *     VCD (value change dump, IEEE 1364-2005, clause 18)     CSV: a row for each pulse, a column for each axis
  *         X_step   __|^^|______|^^|___                           time_s,X,Y,Z
  *         X_dir    ^^^^^^^^^^^^|______   1: forwards             1.000012345,1,0,-1
  *
- * A pulse has no length in hal/step.h. Here a step line is high for half of the shortest time between two steps of its
- * drive, so that it has fallen when the next one comes; its direction changes with the edge.
+ * A pulse has no length in hal/step.h. Here a step line is high for half of the shortest time
+ * between two steps of its drive, so that it has fallen when the next one comes; its direction
+ * changes with the edge.
  */
 #ifndef TAKT_HOST_PULSE_LOG_H
 #define TAKT_HOST_PULSE_LOG_H

@@ -1,8 +1,10 @@
 /*
- * Virtual step drives: stand behind hal/step.h, count what they are told, and say what they made of it.
+ * Virtual step drives: stand behind hal/step.h, count what they are told, and say what they made of
+ * it.
  *
- * A stepping motor has no feedback and no way to complain. A step that comes sooner after the last one of its axis than
- * the motor can follow is lost: it is counted as missed, and the axis does not move. The encoder beside it tells.
+ * A stepping motor has no feedback and no way to complain. A step that comes sooner after the last
+ * one of its axis than the motor can follow is lost: it is counted as missed, and the axis does not
+ * move. The encoder beside it tells.
  */
 #ifndef TAKT_HOST_VIRTUAL_STEPPERS_H
 #define TAKT_HOST_VIRTUAL_STEPPERS_H
@@ -39,8 +41,8 @@ struct virtual_steppers_listener {
 struct virtual_steppers {
     struct virtual_stepper axis[AXIS_COUNT];
     uint64_t cycle_start_ns;
-    uint64_t
-        disordered; /* pulses whose time was before that of the one handed over last, or after the cycle */
+    /* pulses whose time was before that of the one handed over last, or after the cycle */
+    uint64_t disordered;
     uint64_t newest_ns;
     uint32_t cycle_ns;
     struct virtual_steppers_listener listener;

@@ -149,7 +149,10 @@ static struct bore_motion limits_of(const struct machine *machine)
     };
 }
 
-/* The first turn has none before it; the last joined arc ends part of a turn before the circle begins. */
+/*
+ * The first turn has none before it; the last joined arc ends part of a turn before the circle
+ * begins.
+ */
 #define FIRST_TURN     1.25
 #define BEFORE_CIRCLE  0.5
 #define DEGREES(angle) (180.0 / MATHS_PI * (angle))

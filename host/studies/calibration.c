@@ -16,7 +16,10 @@ static void drop_axis_tables(struct axis_tables *tables, unsigned input)
     tables->inputs &= ~(1U << input);
 }
 
-/* What is measured must not be corrected already, and a part that stands askew is no error of the machine. */
+/*
+ * What is measured must not be corrected already, and a part that stands askew is no error of the
+ * machine.
+ */
 static void switch_off(struct calibration *c)
 {
     c->session.setup.machine.correction.off |= 1U << CORRECTION_SETUP | 1U << CORRECTION_WEAR;
@@ -55,7 +58,10 @@ static bool plan_visits(struct calibration *c)
     return true;
 }
 
-/* K is what takes the deviation back; without a direction, the mean of both. Of a unit the errors are told themselves. */
+/*
+ * K is what takes the deviation back; without a direction, the mean of both. Of a unit the errors
+ * are told themselves.
+ */
 static double value_of(const struct calibration *c, const struct measurement_visit visit[2],
                        const struct table_output *output)
 {
@@ -79,7 +85,10 @@ static void set_values(struct calibration *c)
     }
 }
 
-/* The volume table that the errors of all units make together: for controllers without them, on boards. */
+/*
+ * The volume table that the errors of all units make together: for controllers without them, on
+ * boards.
+ */
 static void compose(struct calibration *c)
 {
     struct table *table = &c->table;

@@ -1,5 +1,6 @@
 /*
- * A correction table of the virtual machine: every row of it is visited and measured, or composed of what is known.
+ * A correction table of the virtual machine: every row of it is visited and measured, or composed
+ * of what is known.
  */
 #ifndef TAKT_HOST_CALIBRATION_H
 #define TAKT_HOST_CALIBRATION_H
@@ -16,7 +17,10 @@ struct calibration {
     struct measurement_instrument instrument;
 };
 
-/* Measures all rows of the table, or composes them of the errors of the units; without a message only STATUS_DONE. */
+/*
+ * Measures all rows of the table, or composes them of the errors of the units; without a message
+ * only STATUS_DONE.
+ */
 enum command_status calibration_fill(struct calibration *c, bool composes);
 
 void calibration_close(struct calibration *c);

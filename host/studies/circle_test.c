@@ -11,7 +11,10 @@
 #define LINE_CCW 4
 #define LINE_CW  6
 
-/* Turns of a circle: the feed is reached in the first, the second is measured, it ends in the third. */
+/*
+ * Turns of a circle: the feed is reached in the first, the second is measured, it ends in the
+ * third.
+ */
 #define TURNS    3
 #define MEASURED 1
 
@@ -23,7 +26,10 @@ struct run {
     double angle_rad;  /* of the last one */
 };
 
-/* Both circles from where the first axis is farthest; rests, so that a correction has faded in and the drives have settled. */
+/*
+ * Both circles from where the first axis is farthest; rests, so that a correction has faded in and
+ * the drives have settled.
+ */
 static void write_program(void *context, const struct machine_setup *setup, FILE *program)
 {
     static const char *const planes[] = {"G17", "G18", "G19"};

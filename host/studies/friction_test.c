@@ -15,7 +15,10 @@
 #define SETTLES_S  0.3
 #define MEASURED_S 0.5
 
-/* Line of the program on which an axis goes at the first velocity; each velocity has a line up, one down, and rests. */
+/*
+ * Line of the program on which an axis goes at the first velocity; each velocity has a line up, one
+ * down, and rests.
+ */
 #define LINE_FIRST     3
 #define LINES_VELOCITY 4
 #define LINES_AXIS     (LINES_VELOCITY * FRICTION_VELOCITIES + 1)
@@ -115,7 +118,10 @@ static void write_program(void *context, const struct machine_setup *setup, FILE
 
 /* -- the run -- */
 
-/* The axis that is moved on a line, and at which velocity: of the measured ones in their order. False: none. */
+/*
+ * The axis that is moved on a line, and at which velocity: of the measured ones in their order.
+ * False: none.
+ */
 static bool find_line(const struct run *run, uint32_t line, unsigned *axis, unsigned *k)
 {
     uint32_t first = LINE_FIRST;

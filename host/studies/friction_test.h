@@ -1,5 +1,6 @@
 /*
- * `takt friction`: the friction of every axis with a drive on CAN, by its torque at constant velocities either way.
+ * `takt friction`: the friction of every axis with a drive on CAN, by its torque at constant
+ * velocities either way.
  */
 #ifndef TAKT_HOST_FRICTION_TEST_H
 #define TAKT_HOST_FRICTION_TEST_H
@@ -11,7 +12,10 @@
 
 #include <stdbool.h>
 
-/* Velocities at which an axis is moved, from the lowest: whole multiples of it. At rest friction is what it tends to. */
+/*
+ * Velocities at which an axis is moved, from the lowest: whole multiples of it. At rest friction is
+ * what it tends to.
+ */
 #define FRICTION_VELOCITIES (FRICTION_POINTS - 1)
 
 struct friction_axis {

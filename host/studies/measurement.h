@@ -1,6 +1,6 @@
 /*
- * The part of the measuring engineer: sends the machine to points, lets it settle, and reads how far the tool's point is
- * from where it was sent.
+ * The part of the measuring engineer: sends the machine to points, lets it settle, and reads how
+ * far the tool's point is from where it was sent.
  */
 #ifndef TAKT_HOST_MEASUREMENT_H
 #define TAKT_HOST_MEASUREMENT_H
@@ -21,10 +21,15 @@
 struct measurement_instrument {
     double sigma;   /* mm: standard deviation of its noise */
     uint64_t state; /* of the random numbers, not 0 */
-    uint32_t
-        unit; /* enum axis of the unit it looks at: its three shifts and turns; AXIS_COUNT: at the tool's point */
-    bool
-        on_table; /* the tool's point as seen from the table where it really stands, instead of where it is wanted */
+    /*
+     * enum axis of the unit it looks at: its three shifts and turns; AXIS_COUNT: at the tool's
+     * point
+     */
+    uint32_t unit;
+    /*
+     * the tool's point as seen from the table where it really stands, instead of where it is wanted
+     */
+    bool on_table;
 };
 
 /* One point, and what was found there. */
@@ -35,7 +40,8 @@ struct measurement_visit {
 };
 
 /*
- * Visits all points in their order on the session's machine. Its program is replaced. STATUS_DONE; else after a message.
+ * Visits all points in their order on the session's machine. Its program is replaced. STATUS_DONE;
+ * else after a message.
  */
 enum command_status measurement_run(struct session *session, struct measurement_visit *visits,
                                     uint32_t count, struct measurement_instrument *instrument);

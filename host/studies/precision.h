@@ -1,8 +1,9 @@
 /*
- * What every way of turning a planned feed into positions errs by on one program: watched beside a run of it.
+ * What every way of turning a planned feed into positions errs by on one program: watched beside a
+ * run of it.
  *
- * The run is exact. Each cycle its setpoint is also given to the interpolators by digital integration and to the three
- * step forms, and what they make of it is compared with it.
+ * The run is exact. Each cycle its setpoint is also given to the interpolators by digital
+ * integration and to the three step forms, and what they make of it is compared with it.
  */
 #ifndef TAKT_HOST_PRECISION_H
 #define TAKT_HOST_PRECISION_H

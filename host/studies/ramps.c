@@ -80,7 +80,10 @@ static void look(struct ramps *r, const struct integrate_line *line, struct foll
     *f = (struct follower){way, step_mm, change_mm};
 }
 
-/* Way in a cycle at a feed. What is below a cycle's change of it, a dt, is a stop: ramps of such steps cannot meet it. */
+/*
+ * Way in a cycle at a feed. What is below a cycle's change of it, a dt, is a stop: ramps of such
+ * steps cannot meet it.
+ */
 static double end_mm(const struct ramps *r, double feed_mm_s)
 {
     return feed_mm_s < r->line.a_mm_s2 * r->cycle_s ? 0 : feed_mm_s * r->cycle_s;

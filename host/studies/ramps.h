@@ -1,6 +1,7 @@
 /*
- * Digital integration as seed 002 has it, with ramps of its own (3.9): every line of a program once more, between the feeds
- * that the run began, drove at most and ended it with, in whole words, without regard to jerk (classic/integrate_line.h).
+ * Digital integration as seed 002 has it, with ramps of its own (3.9): every line of a program once
+ * more, between the feeds that the run began, drove at most and ended it with, in whole words,
+ * without regard to jerk (classic/integrate_line.h).
  */
 #ifndef TAKT_HOST_RAMPS_H
 #define TAKT_HOST_RAMPS_H

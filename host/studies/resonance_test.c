@@ -57,7 +57,10 @@ static double longest_mm(const struct machine_axis *axis)
     return maths_min(reach, TRAVEL_PART * (axis->travel_max_mm - axis->travel_min_mm));
 }
 
-/* Ways evenly over the logarithm of their length, to and fro about the middle; rests of any length. Returns its lines. */
+/*
+ * Ways evenly over the logarithm of their length, to and fro about the middle; rests of any length.
+ * Returns its lines.
+ */
 static uint32_t write_axis(FILE *stream, struct run *run, const struct machine_setup *setup,
                            unsigned i)
 {
@@ -105,7 +108,9 @@ static unsigned axis_of(const struct run *run, uint32_t line)
     return found;
 }
 
-/* The accelerometer says what the tool does about the cycle before: x[k + 1] - 2 x[k] + x[k - 1]. */
+/*
+ * The accelerometer says what the tool does about the cycle before: x[k + 1] - 2 x[k] + x[k - 1].
+ */
 static void see(void *context, const struct machine_setup *setup, struct simulation *s,
                 const struct cycle_record *record)
 {

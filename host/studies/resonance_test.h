@@ -1,5 +1,6 @@
 /*
- * `takt resonance`: the modes between drive and tool of every linear axis, by moves at random and an accelerometer at the tool.
+ * `takt resonance`: the modes between drive and tool of every linear axis, by moves at random and
+ * an accelerometer at the tool.
  */
 #ifndef TAKT_HOST_RESONANCE_TEST_H
 #define TAKT_HOST_RESONANCE_TEST_H
@@ -18,7 +19,10 @@ struct resonance_test {
     struct resonance_fit fit[AXIS_LINEAR_COUNT];
 };
 
-/* axes: bit i: axis i is to be measured; 0: all linear ones with a drive on CAN. STATUS_DONE; else after messages. */
+/*
+ * axes: bit i: axis i is to be measured; 0: all linear ones with a drive on CAN. STATUS_DONE; else
+ * after messages.
+ */
 enum command_status resonance_test_run(struct resonance_test *test, unsigned axes,
                                        const struct options *options);
 

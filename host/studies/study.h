@@ -1,5 +1,6 @@
 /*
- * A run of a program that is made for the machine, watched cycle by cycle: what circle, friction and resonance have in common.
+ * A run of a program that is made for the machine, watched cycle by cycle: what circle, friction
+ * and resonance have in common.
  */
 #ifndef TAKT_HOST_STUDY_H
 #define TAKT_HOST_STUDY_H

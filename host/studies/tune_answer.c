@@ -4,11 +4,16 @@
 
 #include <math.h>
 
-/* The step: part of the motor's torque that it asks for at first, and how many steps of the encoder it has at least. */
+/*
+ * The step: part of the motor's torque that it asks for at first, and how many steps of the encoder
+ * it has at least.
+ */
 #define STEP_TORQUE 0.5
 #define STEP_STEPS  40
 
-/* The move: parts of the travel and of the motor's acceleration, and turns of the motor, at most. */
+/*
+ * The move: parts of the travel and of the motor's acceleration, and turns of the motor, at most.
+ */
 #define MOVE_TRAVEL 0.05
 #define MOVE_TORQUE 0.4
 #define MOVE_TURNS  2
@@ -22,8 +27,8 @@
 #define REST_S 0.2
 
 /*
- * In the last part of the time of a step, or of the rest behind a move, the axis stays within this part of the step, or
- * this many steps of the encoder.
+ * In the last part of the time of a step, or of the rest behind a move, the axis stays within this
+ * part of the step, or this many steps of the encoder.
  */
 #define LAST_PART    0.2
 #define STEADY_PART  0.1
@@ -59,7 +64,10 @@ struct tune_task tune_task_of(const struct tune_axis *result, const struct tunin
     if (window > 0)
         task.step = maths_min(task.step, window / 2);
     task.step = inwards * maths_min(task.step, MOVE_TRAVEL * travel);
-    /* s = 10 u^3 - 15 u^4 + 6 u^5: 1.875 of way/time, 5.774 of way/time^2, 60 of way/time^3 at most. */
+    /*
+     * s = 10 u^3 - 15 u^4 + 6 u^5: 1.875 of way/time, 5.774 of way/time^2, 60 of way/time^3 at
+     * most.
+     */
     task.move_s = maths_max(
         1.875 * task.way / axis->max_velocity_mm_s,
         maths_max(sqrt(5.774 * task.way / a), cbrt(60 * task.way / axis->max_jerk_mm_s3)));

@@ -16,7 +16,10 @@ struct tune_task {
     double move_s;
 };
 
-/* For the gains that have been found: a step that asks for half of the torque, a move within the axis' limits. */
+/*
+ * For the gains that have been found: a step that asks for half of the torque, a move within the
+ * axis' limits.
+ */
 struct tune_task tune_task_of(const struct tune_axis *result, const struct tuning_gains *found,
                               const struct tune_drive *drive, const struct machine_axis *axis);
 

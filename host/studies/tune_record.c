@@ -47,7 +47,10 @@ static void set_range(struct tune_axis *result)
     }
 }
 
-/* Its torque acts half a step early (drive_plant.c), so it comes half a step later than what was found. */
+/*
+ * Its torque acts half a step early (drive_plant.c), so it comes half a step later than what was
+ * found.
+ */
 static void give(struct drive_plant_config *plant, const struct tuning_plant *found, double step_s)
 {
     const double steps = takt_maths_round(found->delay_s / step_s + 0.5);

@@ -3,10 +3,11 @@
  *
  *     sign (v / V + (x - centre) / X) >= 1
  *
- * so the axis swings about a centre, and is brought there at no more than about twice V if it stands elsewhere. The loops of the
- * drive have no part in it, so it is the same with gains that make them swing. The torque is raised until it moves the axis,
- * and on until two tests, one with twice the torque of the other, find the same inertia and delay: one whose torque is near the friction says
- * little of either.
+ * so the axis swings about a centre, and is brought there at no more than about twice V if it
+ * stands elsewhere. The loops of the drive have no part in it, so it is the same with gains that
+ * make them swing. The torque is raised until it moves the axis, and on until two tests, one with
+ * twice the torque of the other, find the same inertia and delay: one whose torque is near the
+ * friction says little of either.
  */
 #include "studies/tune_relay.h"
 
@@ -16,7 +17,10 @@
 #define TORQUE_FIRST 50
 #define TORQUE_LAST  1000
 
-/* Cycles of a push, which ends when the axis has gone this many encoder steps and this part of a turn of the motor. */
+/*
+ * Cycles of a push, which ends when the axis has gone this many encoder steps and this part of a
+ * turn of the motor.
+ */
 #define PUSH_CYCLES_MIN 8
 #define PUSH_CYCLES_MAX 100
 #define PUSH_STEPS      40
@@ -34,7 +38,10 @@
 /* and the axis is let go when it is so much farther out than where it began. */
 #define OUT_PART 0.01
 
-/* Inertias and delays of two tests are the same if they differ by no more than these parts of them and of a cycle. */
+/*
+ * Inertias and delays of two tests are the same if they differ by no more than these parts of them
+ * and of a cycle.
+ */
 #define AGREE_PART  0.03
 #define AGREE_CYCLE 0.1
 
@@ -75,7 +82,10 @@ static double least_way(const struct relay *r)
     return maths_max(PUSH_STEPS * r->record->step, PUSH_TURNS * turn);
 }
 
-/* A push that moves it sets V and X: at an even acceleration v = 2 way / time. False: it did not move enough. */
+/*
+ * A push that moves it sets V and X: at an even acceleration v = 2 way / time. False: it did not
+ * move enough.
+ */
 static bool try_push(struct relay *r, double rated_nm)
 {
     const double from = r->now;

@@ -1,5 +1,6 @@
 /*
- * `takt tune`: what an axis' drive moves, by a relay test of its torque; gains for that; a step and a small move before and after.
+ * `takt tune`: what an axis' drive moves, by a relay test of its torque; gains for that; a step and
+ * a small move before and after.
  */
 #ifndef TAKT_HOST_TUNE_TEST_H
 #define TAKT_HOST_TUNE_TEST_H
@@ -40,7 +41,10 @@ struct tune_test {
     struct tune_axis axis[AXIS_COUNT];
 };
 
-/* axes: bit i: axis i is to be tuned; 0: all that can be. STATUS_DONE; else after messages. Free it in either case. */
+/*
+ * axes: bit i: axis i is to be tuned; 0: all that can be. STATUS_DONE; else after messages. Free it
+ * in either case.
+ */
 enum command_status tune_test_run(struct tune_test *test, unsigned axes,
                                   const struct options *options);
 void tune_test_free(struct tune_test *test);

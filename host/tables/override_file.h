@@ -23,7 +23,10 @@ struct override_file {
     double percent;
 };
 
-/* path NULL: 100 per cent throughout. percent_max: the highest that is accepted. False after a message. */
+/*
+ * path NULL: 100 per cent throughout. percent_max: the highest that is accepted. False after a
+ * message.
+ */
 bool override_file_load(struct override_file *file, const char *path, double percent_max);
 void override_file_free(struct override_file *file);
 

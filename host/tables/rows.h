@@ -1,6 +1,6 @@
 /*
- * Text files with numbers in rows: blanks between them, lines without any, comments from # on. Errors are told with file, line
- * and column.
+ * Text files with numbers in rows: blanks between them, lines without any, comments from # on.
+ * Errors are told with file, line and column.
  */
 #ifndef TAKT_HOST_ROWS_H
 #define TAKT_HOST_ROWS_H

@@ -1,5 +1,6 @@
 /*
- * The file of --stock: the top of the material, a table over X and Y in machine coordinates. '#' begins a comment.
+ * The file of --stock: the top of the material, a table over X and Y in machine coordinates. '#'
+ * begins a comment.
  *
  *     0   50   100      X of the columns, rising
  *     0   2.0  2.5  1.8     Y of a row, rising, and the top at each X

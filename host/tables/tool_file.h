@@ -1,10 +1,12 @@
 /*
- * Tool tables in LinuxCNC's .tbl form: one tool a line, a letter and a number per word, ';' begins a comment.
+ * Tool tables in LinuxCNC's .tbl form: one tool a line, a letter and a number per word, ';' begins
+ * a comment.
  *
  *     T1 P1 Z50.8 D6.35 ; end mill
  *
- * T: number. X Y Z A B C: offsets, mm and degrees. D: diameter, mm. I, J: front and back angle, degrees, and Q:
- * orientation, of lathe tools. P (pocket) and U V W must be numbers and are not used.
+ * T: number. X Y Z A B C: offsets, mm and degrees. D: diameter, mm. I, J: front and back angle,
+ * degrees, and Q: orientation, of lathe tools. P (pocket) and U V W must be numbers and are not
+ * used.
  */
 #ifndef TAKT_HOST_TOOL_FILE_H
 #define TAKT_HOST_TOOL_FILE_H

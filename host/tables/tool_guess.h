@@ -12,7 +12,9 @@
 
 #include <stdbool.h>
 
-/* Fills an empty file, with a warning that says what it is. False after a message: out of memory. */
+/*
+ * Fills an empty file, with a warning that says what it is. False after a message: out of memory.
+ */
 bool tool_guess(struct tool_file *file, const struct program_text *text);
 
 #endif

@@ -97,8 +97,8 @@ static enum command_status tell_signal(enum command_status status)
 }
 
 /*
- * What was printed must have arrived: a full disk behind a redirection is an error like any other. A reader who has
- * seen enough (`takt plan | head`) needs no message.
+ * What was printed must have arrived: a full disk behind a redirection is an error like any other.
+ * A reader who has seen enough (`takt plan | head`) needs no message.
  */
 static enum command_status flush_stdout(enum command_status status)
 {

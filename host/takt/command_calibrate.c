@@ -28,7 +28,10 @@ static enum command_status write_result(const struct calibration *c, const struc
     return correction_file_write(&c->table, path, comment) ? STATUS_DONE : STATUS_ENVIRONMENT;
 }
 
-/* A table that does not fit is refused before anything is measured, one with too large numbers afterwards. */
+/*
+ * A table that does not fit is refused before anything is measured, one with too large numbers
+ * afterwards.
+ */
 static enum command_status measure(struct calibration *c, const struct options *options)
 {
     enum command_status status;

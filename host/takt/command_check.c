@@ -4,7 +4,10 @@
 
 #include <stdio.h>
 
-/* Errors that are printed before the rest is given up: after this many the file is hardly a part program. */
+/*
+ * Errors that are printed before the rest is given up: after this many the file is hardly a part
+ * program.
+ */
 #define CHECK_ERRORS_MAX 100
 
 static void print_found(const struct session *session, const struct session_totals *found)

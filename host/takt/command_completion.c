@@ -1,5 +1,6 @@
 /*
- * Completions of the command line for shells, made from the option tables: what is offered is what is there.
+ * Completions of the command line for shells, made from the option tables: what is offered is what
+ * is there.
  */
 #include "takt/command.h"
 

@@ -26,7 +26,9 @@ struct frequency_job {
     struct output_file file[FILES];
 };
 
-/* A number above 0 with an optional suffix: NULL text leaves *number alone. False after a message. */
+/*
+ * A number above 0 with an optional suffix: NULL text leaves *number alone. False after a message.
+ */
 static bool read_positive(const char *option, const char *text, const char *suffix, double ratio,
                           double *number)
 {

@@ -14,7 +14,9 @@
 #include <poll.h>
 #include <string.h>
 
-/* How soon a signal is noticed while there is nothing else to do; it also ends the wait by itself. */
+/*
+ * How soon a signal is noticed while there is nothing else to do; it also ends the wait by itself.
+ */
 #define SIGNAL_LOOK_MS 100
 
 /* Where the log goes; NULL: nowhere. False after a message. */

@@ -15,7 +15,8 @@
 #include <unistd.h>
 
 /*
- * Lines that loops may repeat in all while a text is being written, unless --lines-max says otherwise: a moment.
+ * Lines that loops may repeat in all while a text is being written, unless --lines-max says
+ * otherwise: a moment.
  */
 #define LINES_MAX 300000
 

@@ -56,7 +56,9 @@ static double uncertain_percent(const struct resonance_fit *fit)
     return fit->modes == 1 ? 100 * 2 * fit->mode[0].hz.deviation / fit->mode[0].hz.value : 0;
 }
 
-/* To be taken, or raised by what the machine changes by itself: it costs time, so it is a remark. */
+/*
+ * To be taken, or raised by what the machine changes by itself: it costs time, so it is a remark.
+ */
 static void write_uncertain(FILE *file, const struct resonance_test *test)
 {
     (void)fputs("# mode_uncertainty_percent =", file);

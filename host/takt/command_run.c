@@ -46,7 +46,10 @@ static bool is_bus_lost(const struct run *run)
     return drive_network_get_problem(&run->simulation->network) != NULL;
 }
 
-/* Drives on a bus outside are others' drives: what they do without is told before they have done it, not after. */
+/*
+ * Drives on a bus outside are others' drives: what they do without is told before they have done
+ * it, not after.
+ */
 static void tell_drives(struct run_command *c)
 {
     const struct drives *drives = takt_controller_get_drives(&c->run.simulation->controller);
@@ -64,7 +67,10 @@ static bool look(struct run_command *c)
     return !run_outputs_failed(&c->outputs);
 }
 
-/* Runs to the program's end, a fault, --until or a signal. False: a file cannot be written, or the bus is gone. */
+/*
+ * Runs to the program's end, a fault, --until or a signal. False: a file cannot be written, or the
+ * bus is gone.
+ */
 static bool run_loop(struct run_command *c)
 {
     uint64_t start_ns = stopwatch_now_ns();

@@ -55,7 +55,10 @@ static bool do_differ(struct drive_image *image, enum twin_ask_kind here, uint32
     return hang_up(image);
 }
 
-/* The next thing it does, which must be of this kind. False: there is none; the drive here is alone. */
+/*
+ * The next thing it does, which must be of this kind. False: there is none; the drive here is
+ * alone.
+ */
 static bool next_ask(struct drive_image *image, enum twin_ask_kind kind, struct twin_ask *ask)
 {
     *ask = (struct twin_ask){.kind = kind};
@@ -225,7 +228,9 @@ static void end(void *context)
 
 /* -- start -- */
 
-/* The image says what it was built with, and is told what drive it is; then it looks at its motor. */
+/*
+ * The image says what it was built with, and is told what drive it is; then it looks at its motor.
+ */
 static void open(void *context, struct servo *servo, const struct servo_config *config,
                  const struct pdo *target, struct can_port *port, struct motor_port *motor)
 {

@@ -1,9 +1,11 @@
 /*
- * Drives that are images in QEMU, one process a drive, beside those of this process (drives/virtual_drive_twin.h).
+ * Drives that are images in QEMU, one process a drive, beside those of this process
+ * (drives/virtual_drive_twin.h).
  *
- * Both get the same orders. What the image does goes to bus and motor, and is compared with what the drive here does at the
- * same moment, bit for bit: every frame, every torque. Where they do another thing at all, or QEMU ends, the talk is over:
- * `problem` says so, and the drive here goes on alone.
+ * Both get the same orders. What the image does goes to bus and motor, and is compared with what
+ * the drive here does at the same moment, bit for bit: every frame, every torque. Where they do
+ * another thing at all, or QEMU ends, the talk is over: `problem` says so, and the drive here goes
+ * on alone.
  */
 #ifndef TAKT_TARGET_DRIVE_IMAGE_H
 #define TAKT_TARGET_DRIVE_IMAGE_H
@@ -36,8 +38,9 @@ struct drive_image {
 bool drive_image_is_known(const char *name);
 
 /*
- * Starts QEMU; the drive is switched on with virtual_drive_init of a config whose twin is image->twin. It must not be moved.
- * False: image->problem; drive_image_close is due in either case.
+ * Starts QEMU; the drive is switched on with virtual_drive_init of a config whose twin is
+ * image->twin. It must not be moved. False: image->problem; drive_image_close is due in either
+ * case.
  */
 bool drive_image_open(struct drive_image *image, const char *name, const char *path);
 void drive_image_close(struct drive_image *image);

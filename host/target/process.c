@@ -80,8 +80,8 @@ static char *word(const char *text)
 }
 
 /*
- * -icount shift=0: an instruction takes a nanosecond, so that the image's clock counts instructions, and two runs are
- * the same. sleep=off: never waits for real time.
+ * -icount shift=0: an instruction takes a nanosecond, so that the image's clock counts
+ * instructions, and two runs are the same. sleep=off: never waits for real time.
  */
 static pid_t start_image(const struct process_board *board, const char *image,
                          const int file[FILES_MAX])

@@ -7,7 +7,10 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* What the image opens, in this order: files up to the first -1, and for PROCESS_TALK the two ends of the talk. */
+/*
+ * What the image opens, in this order: files up to the first -1, and for PROCESS_TALK the two ends
+ * of the talk.
+ */
 #define PROCESS_FILES 4
 #define PROCESS_TALK  (-2)
 
@@ -29,8 +32,8 @@ struct process {
 };
 
 /*
- * Starts QEMU. The files stay the caller's. False: it cannot be started; errno says why, and process is
- * to be ended.
+ * Starts QEMU. The files stay the caller's. False: it cannot be started; errno says why, and
+ * process is to be ended.
  */
 bool process_start(struct process *process, const struct process_board *board, const char *image,
                    const int file[PROCESS_FILES]);

@@ -1,11 +1,13 @@
 /*
- * A run whose controller is on another processor: QEMU, started with an image (hal/semihosting), talked to cycle by cycle.
+ * A run whose controller is on another processor: QEMU, started with an image (hal/semihosting),
+ * talked to cycle by cycle.
  *
  *     target_begin_cycle    inputs and received frames go out; the image works
  *     ... the controller of this process does the same cycle ...
  *     target_end_cycle      what the image did comes back, and is compared with it, bit for bit
  *
- * The frames that go on to the drives are the image's. The controller of this process hangs on target_get_port.
+ * The frames that go on to the drives are the image's. The controller of this process hangs on
+ * target_get_port.
  */
 #ifndef TAKT_TARGET_TARGET_H
 #define TAKT_TARGET_TARGET_H
@@ -76,8 +78,8 @@ struct target {
 bool target_is_known(const char *name);
 
 /*
- * Starts QEMU and hands over machine, program and tables. It must not be moved once opened. False: target->problem says
- * why; target_close is due in either case.
+ * Starts QEMU and hands over machine, program and tables. It must not be moved once opened. False:
+ * target->problem says why; target_close is due in either case.
  */
 bool target_open(struct target *target, const struct target_config *config);
 void target_close(struct target *target);
@@ -85,7 +87,9 @@ void target_close(struct target *target);
 /* The bus of the controller in this process. */
 struct can_port target_get_port(struct target *target);
 
-/* rise_k: AXIS_COUNT temperatures as takt_correction_set_rise takes them. False: target->problem. */
+/*
+ * rise_k: AXIS_COUNT temperatures as takt_correction_set_rise takes them. False: target->problem.
+ */
 bool target_begin_cycle(struct target *target, const struct inputs *inputs, const double *rise_k);
 
 /* controller: of this process, after the same cycle. False: target->problem. */

@@ -8,12 +8,16 @@
 #include "machine/machine.h"
 #include "trace/trace_reader.h"
 
-/* Prints peaks of velocity, acceleration and jerk by differences of the set columns, how many cycles are above the
- * limits and where first. STATUS_FAILED when any is. */
+/*
+ * Prints peaks of velocity, acceleration and jerk by differences of the set columns, how many
+ * cycles are above the limits and where first. STATUS_FAILED when any is.
+ */
 enum command_status trace_check_limits(struct trace_reader *r, const struct machine *machine);
 
-/* Prints where two traces differ by more than tolerance first and most, column by column. STATUS_FAILED when any does,
- * or when one has more rows. */
+/*
+ * Prints where two traces differ by more than tolerance first and most, column by column.
+ * STATUS_FAILED when any does, or when one has more rows.
+ */
 enum command_status trace_check_equal(struct trace_reader *a, struct trace_reader *b,
                                       double tolerance);
 

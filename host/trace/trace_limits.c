@@ -78,7 +78,10 @@ static void watch_value(const struct limits_watch *w, struct limit_watch *watch,
     }
 }
 
-/* Differences: the first row gives a position, the second a velocity, the third an acceleration, the fourth a jerk. */
+/*
+ * Differences: the first row gives a position, the second a velocity, the third an acceleration,
+ * the fourth a jerk.
+ */
 static void watch_axis(const struct limits_watch *w, struct axis_watch *axis)
 {
     double value = w->reader->value[axis->column];

@@ -10,9 +10,10 @@ enum dialect_use {
     DIALECT_STOP,      /* M0 */
     DIALECT_OUTPUT_ON, /* M64 P number */
     DIALECT_OUTPUT_OFF,
-    DIALECT_FEED,       /* F: what it is before the program gives one, mm/min */
-    DIALECT_SUBROUTINE, /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
-    DIALECT_AXIS,       /* U V W: the axis of the machine that this letter drives */
+    DIALECT_FEED, /* F: what it is before the program gives one, mm/min */
+    /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
+    DIALECT_SUBROUTINE,
+    DIALECT_AXIS,    /* U V W: the axis of the machine that this letter drives */
     DIALECT_HEIGHT,  /* R of drilling on lathes: a coordinate, */
     DIALECT_DISTANCE /* or from where the tool is when the cycle begins */
 };
@@ -29,7 +30,10 @@ struct dialect_code {
     char subroutine[DIALECT_SUBROUTINE_MAX + 1];
 };
 
-/* What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>; what senders put for #NAME; and #<_NAME>. */
+/*
+ * What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>; what senders
+ * put for #NAME; and #<_NAME>.
+ */
 struct dialect_value {
     char name[64]; /* "_ini[SECTION]NAME", "_hal[PIN]", "NAME", "_NAME" */
     double value;
@@ -46,7 +50,10 @@ struct dialect_codes {
 /* Adds a value, or changes it. NULL: it is right; else what is wrong. */
 const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value);
 
-/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600"; "U" and "A" or "ignore"; "R" and "height" or "distance". NULL: it is right; else what is wrong. */
+/*
+ * "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600"; "U"
+ * and "A" or "ignore"; "R" and "height" or "distance". NULL: it is right; else what is wrong.
+ */
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value);
 
 /* "M31 = ignore", as in a machine file. */

@@ -5,7 +5,10 @@
 #include <string.h>
 
 #define LINE_TEXT_MAX 2304
-/* So much of a message is shown: with its parentheses it is a comment of a line that every control reads. */
+/*
+ * So much of a message is shown: with its parentheses it is a comment of a line that every control
+ * reads.
+ */
 #define MESSAGE_MAX 201
 
 void translate_add(struct dialect_text *t, const char *format, ...)

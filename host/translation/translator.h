@@ -1,6 +1,6 @@
 /*
- * A program that is being translated: its line, what comes of it, and what it leaves for later lines. Languages read and
- * change the line, and add to what stands before and behind it.
+ * A program that is being translated: its line, what comes of it, and what it leaves for later
+ * lines. Languages read and change the line, and add to what stands before and behind it.
  */
 #ifndef TAKT_HOST_TRANSLATION_TRANSLATOR_H
 #define TAKT_HOST_TRANSLATION_TRANSLATOR_H
@@ -94,7 +94,10 @@ struct translator {
     uint32_t program;     /* number of O1000 lines so far */
     uint32_t macro;       /* the current program is called by G65; 0: it is not */
     char modal_call[TRANSLATE_CALL_MAX]; /* G66; empty: none */
-    /* Siemens: names that are jumped to, those of variables (DEF), open blocks, the subprogram it is in */
+    /*
+     * Siemens: names that are jumped to, those of variables (DEF), open blocks, the subprogram it
+     * is in
+     */
     unsigned names, variables, blocks, nested;
     char name[TRANSLATE_PROGRAMS_MAX][32], variable[TRANSLATE_PROGRAMS_MAX][32];
     uint32_t block[TRANSLATE_LINES_MAX];

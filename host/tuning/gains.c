@@ -1,13 +1,14 @@
 /*
- * The velocity loop is open, with T all that comes late in it: the torque, its being held over a step of the loop and the velocity's
- * being that between two readings (half a step each):
+ * The velocity loop is open, with T all that comes late in it: the torque, its being held over a
+ * step of the loop and the velocity's being that between two readings (half a step each):
  *
  *     L = Kp (1 + 1/(Ti s)) e^(-sT) / s         phase margin  atan(w Ti) - w T  at  |L| = 1
  *
- * With c = w Ti a margin m is kept by w = (atan c - m) / T, and the loop's error under a load that changes is as Ti/Kp, near
- * c / w^2: the c that makes (atan c - m)^2 / c greatest leaves least of a disturbance for that margin (Astrom and Hagglund 2006, 4.4:
- * the greatest integral gain that keeps a margin). Where friction b/J is more than that 1/Ti, Ti = J/b takes its pole away, and
- * w = (90 degrees - m) / T. Less friction makes the margin larger. The position loop around it,
+ * With c = w Ti a margin m is kept by w = (atan c - m) / T, and the loop's error under a load that
+ * changes is as Ti/Kp, near c / w^2: the c that makes (atan c - m)^2 / c greatest leaves least of a
+ * disturbance for that margin (Astrom and Hagglund 2006, 4.4: the greatest integral gain that keeps
+ * a margin). Where friction b/J is more than that 1/Ti, Ti = J/b takes its pole away, and w = (90
+ * degrees - m) / T. Less friction makes the margin larger. The position loop around it,
  *
  *     L = Kv / s * T_v,   T_v = L_v / (1 + L_v)
  *
@@ -20,7 +21,10 @@
 
 #include <math.h>
 
-/* Frequencies that are looked at: from far below the slowest gain that there can be to where the loops sample twice a turn. */
+/*
+ * Frequencies that are looked at: from far below the slowest gain that there can be to where the
+ * loops sample twice a turn.
+ */
 #define W_LOW   1e-3
 #define W_RATIO 1.01
 
@@ -57,7 +61,10 @@ static struct loops loops_of(const struct tuning_plant *plant, const struct tuni
     };
 }
 
-/* Response of an open loop at a frequency: how much it makes of a sine, and by which angle that is ahead. */
+/*
+ * Response of an open loop at a frequency: how much it makes of a sine, and by which angle that is
+ * ahead.
+ */
 struct response {
     double gain, phase_rad;
 };
@@ -84,7 +91,10 @@ static struct response position_loop(const struct loops *l, double w)
     };
 }
 
-/* The least phase above -180 degrees where the gain crosses 1, of -180 to 180 degrees; of a loop whose gain never does, infinite. */
+/*
+ * The least phase above -180 degrees where the gain crosses 1, of -180 to 180 degrees; of a loop
+ * whose gain never does, infinite.
+ */
 static double phase_margin_deg(struct response (*loop)(const struct loops *l, double w),
                                const struct loops *l, double w_high)
 {
@@ -143,7 +153,10 @@ static double best_corner(double margin_rad)
     return best;
 }
 
-/* The velocity loop's gain may be no more than what the drive takes, and what the encoder's steps allow. */
+/*
+ * The velocity loop's gain may be no more than what the drive takes, and what the encoder's steps
+ * allow.
+ */
 static double gain_max(const struct tuning_plant *plant, const struct tuning_drive *drive)
 {
     const double rated = plant->travel_per_rad * drive->torque_rated_nm / plant->inertia_kg_m2;

@@ -1,5 +1,6 @@
 /*
- * Gains of a cascade of position and velocity loop, from what it moves, and how much room they leave.
+ * Gains of a cascade of position and velocity loop, from what it moves, and how much room they
+ * leave.
  */
 #ifndef TAKT_HOST_TUNING_GAINS_H
 #define TAKT_HOST_TUNING_GAINS_H
@@ -31,8 +32,10 @@ struct tuning_drive {
 struct tuning_margins {
     double velocity_phase_deg; /* not above 0: that loop is not stable */
     double position_phase_deg;
-    double
-        overshoot; /* of a step of the target without feed-forward, part of the step; infinite: it does not settle */
+    /*
+     * of a step of the target without feed-forward, part of the step; infinite: it does not settle
+     */
+    double overshoot;
 };
 
 void tuning_margins_of(const struct tuning_plant *plant, const struct tuning_drive *drive,

@@ -7,13 +7,15 @@
  *
  *     x = x0 + v0 t + h/J MM(t - D) - b/J X - h c/J SS - h g/J t^2/2
  *
- * MM is the torque's second integral, exact since it is constant over a cycle; X the integral of x, SS the second integral of
- * the sign of x'. What is wrong of x' once would be wrong of x ever after. So all of them are compared by their second differences
+ * MM is the torque's second integral, exact since it is constant over a cycle; X the integral of x,
+ * SS the second integral of the sign of x'. What is wrong of x' once would be wrong of x ever
+ * after. So all of them are compared by their second differences
  *
  *     x(t + m) - 2 x(t) + x(t - m)
  *
- * m being half of the time from one turn of the torque to the next: x0 and v0 are gone, and every reading counts as what it
- * has been for 2 m. All but D is linear: least squares for every D of a grid, and of finer ones about the best.
+ * m being half of the time from one turn of the torque to the next: x0 and v0 are gone, and every
+ * reading counts as what it has been for 2 m. All but D is linear: least squares for every D of a
+ * grid, and of finer ones about the best.
  */
 #include "tuning/identify.h"
 
@@ -25,7 +27,10 @@
 
 enum number { TORQUE, WAY, SIGN, FALL, NUMBERS };
 
-/* Delays: up to 24 cycles, first in quarters of one; then REFINEMENTS times about the best, each FINER times finer. */
+/*
+ * Delays: up to 24 cycles, first in quarters of one; then REFINEMENTS times about the best, each
+ * FINER times finer.
+ */
 #define DELAYS      99
 #define DELAY_PARTS 4
 #define REFINEMENTS 6
@@ -79,8 +84,9 @@ static double moved_in(const struct tuning_record *r, size_t k)
 }
 
 /*
- * Mean of the velocity's sign over a cycle. Where it turns round it goes straight through 0, as both cycles beside it have it:
- * a cycle that is taken for one sign as a whole would leave an error of velocity behind, and of the way ever after.
+ * Mean of the velocity's sign over a cycle. Where it turns round it goes straight through 0, as
+ * both cycles beside it have it: a cycle that is taken for one sign as a whole would leave an error
+ * of velocity behind, and of the way ever after.
  */
 static double direction(const struct tuning_record *r, size_t k)
 {
@@ -130,7 +136,10 @@ static double dot(const double *a, const double *b, size_t count)
     return sum;
 }
 
-/* Gauss and Jordan with the largest pivot of a column. False: the columns say nothing about a number. */
+/*
+ * Gauss and Jordan with the largest pivot of a column. False: the columns say nothing about a
+ * number.
+ */
 static bool solve(double m[NUMBERS][2 * NUMBERS + 1])
 {
     for (unsigned k = 0; k < NUMBERS; k++) {
@@ -246,7 +255,10 @@ static bool take(struct problem *p, double travel_per_rad, struct tuning_plant *
         return false;
     const double inertia = travel_per_rad / per_torque;
 
-    /* Readings that are rounded to steps are off by step/sqrt(12) at least, a second difference by sqrt(6) times that. */
+    /*
+     * Readings that are rounded to steps are off by step/sqrt(12) at least, a second difference by
+     * sqrt(6) times that.
+     */
     const double step = p->record->step;
     const double variance = fmax(left, step * step / 2);
 

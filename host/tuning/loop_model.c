@@ -4,7 +4,8 @@
  *     v_wanted = Kv (1 - x),  a = Kp e + integral of Kp e / Ti,  e = v_wanted - v
  *     v += (a delayed - b/J v) dt,  x += v dt
  *
- * In this scheme a torque acts half a step early, so its delay is D + dt/2; a part of a step lies straight between two.
+ * In this scheme a torque acts half a step early, so its delay is D + dt/2; a part of a step lies
+ * straight between two.
  */
 #include "tuning/loop_model.h"
 
@@ -14,7 +15,10 @@
 
 #define DELAY_MAX 4096u /* steps; a power of two */
 
-/* It is looked at for this many time constants of the slowest of its parts, and is lost when this far away. */
+/*
+ * It is looked at for this many time constants of the slowest of its parts, and is lost when this
+ * far away.
+ */
 #define TIME_CONSTANTS 12.0
 #define STEPS_MAX      400000.0
 #define LOST           20.0

@@ -1,5 +1,6 @@
 /*
- * A drive's loops on what was identified, without limits and steps of the encoder: the answer to a step of the target.
+ * A drive's loops on what was identified, without limits and steps of the encoder: the answer to a
+ * step of the target.
  */
 #ifndef TAKT_HOST_TUNING_LOOP_MODEL_H
 #define TAKT_HOST_TUNING_LOOP_MODEL_H

@@ -12,8 +12,10 @@ struct tuning_record {
     double cycle_s;
     double step; /* of the position: what cannot be told apart */
     size_t count;
-    double *
-        input; /* from its beginning to its end: torque Nm of a test, or a command in the unit of the position */
+    /*
+     * from its beginning to its end: torque Nm of a test, or a command in the unit of the position
+     */
+    double *input;
     double *position; /* at its beginning; mm, rotary: rad */
     size_t room;
     bool failed; /* out of memory */

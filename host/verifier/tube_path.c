@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pieces of curved curves are off by this part of the tolerance at most: so much more has the order of places on them. */
+/*
+ * Pieces of curved curves are off by this part of the tolerance at most: so much more has the order
+ * of places on them.
+ */
 #define CUT_PART 0.002
 
 /* Lines that may be one element (smooth/merge.h). */
@@ -199,7 +202,10 @@ static bool read_motion(struct tube_path *p)
     return false;
 }
 
-/* Where the next piece of the motion ends: no curve is off a piece that is shorter than that by more. */
+/*
+ * Where the next piece of the motion ends: no curve is off a piece that is shorter than that by
+ * more.
+ */
 static double next_cut(const struct tube_path *p)
 {
     const struct tube_motion *m = p->motion;

@@ -1,12 +1,13 @@
 /*
- * A program's path as the verifier of rounded paths wants it: read as it is needed, and cut into straight pieces.
+ * A program's path as the verifier of rounded paths wants it: read as it is needed, and cut into
+ * straight pieces.
  *
- * A planner may take several lines for one element, as long as that is straight. Of one within the tolerance of a place no
- * more than twice the tolerance is, so a motion counts as that part of an element which it is of that length, no less than a
- * 25th and no more than a whole one.
+ * A planner may take several lines for one element, as long as that is straight. Of one within the
+ * tolerance of a place no more than twice the tolerance is, so a motion counts as that part of an
+ * element which it is of that length, no less than a 25th and no more than a whole one.
  *
- * Bent curves are cut so that a piece is off the curve by a small part of the tolerance. Only the pieces between the
- * first and the last that are asked for are in memory.
+ * Bent curves are cut so that a piece is off the curve by a small part of the tolerance. Only the
+ * pieces between the first and the last that are asked for are in memory.
  */
 #ifndef TAKT_HOST_TUBE_PATH_H
 #define TAKT_HOST_TUBE_PATH_H
@@ -67,7 +68,10 @@ struct tube_path {
     size_t first, count, capacity;
 };
 
-/* Begins with one piece that has no length, where the program starts. source: its context stays the caller's. */
+/*
+ * Begins with one piece that has no length, where the program starts. source: its context stays the
+ * caller's.
+ */
 void tube_path_init(struct tube_path *p, const struct program_config *program,
                     const struct source *source, double exact_mm);
 void tube_path_free(struct tube_path *p);
@@ -76,10 +80,15 @@ static inline struct tube_piece *tube_path_at(const struct tube_path *p, size_t 
 {
     return &p->piece[(p->first + k) & (p->capacity - 1)];
 }
-/* Appends the next piece. False: there is none before an answer, or at all, or no memory (failed). */
+/*
+ * Appends the next piece. False: there is none before an answer, or at all, or no memory (failed).
+ */
 bool tube_path_extend(struct tube_path *p);
 void tube_path_drop(struct tube_path *p);
-/* What the program waits for. All pieces go but one: where the path goes on, at rest_at after a probing motion. */
+/*
+ * What the program waits for. All pieces go but one: where the path goes on, at rest_at after a
+ * probing motion.
+ */
 void tube_path_answer(struct tube_path *p, const struct program_answer *answer);
 
 #endif

@@ -21,7 +21,10 @@ struct tube_beside {
     double last;
 };
 
-/* The place of a segment nearest to p that is not before the part `from`, and all places within so much of p. */
+/*
+ * The place of a segment nearest to p that is not before the part `from`, and all places within so
+ * much of p.
+ */
 struct tube_beside tube_segment_beside(const struct tube_segment *s, double from,
                                        const struct point *p, double within_mm);
 

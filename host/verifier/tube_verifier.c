@@ -6,22 +6,23 @@
 
 #include <string.h>
 
-/* How far ahead of what has been left the path is looked for: this many steps, and this many tolerances. */
+/* How far ahead of what has been left the path is looked for: steps, and tolerances. */
 #define REACH_STEPS      4
 #define REACH_TOLERANCES 20
 
 /*
- * Where the setpoint is within the tolerance of the path up to this many elements (tube_path.h) beyond the motion that is
- * executed, no more are gone to; as many behind it are not left yet. What the planner on board rounds at once has fewer
- * (smooth/route.h).
+ * Where the setpoint is within the tolerance of the path up to this many elements (tube_path.h)
+ * beyond the motion that is executed, no more are gone to; as many behind it are not left yet. What
+ * the planner on board rounds at once has fewer (smooth/route.h).
  */
 #define CROWD 128
 /*
- * And no more than this many pieces: for circles of many turns within the tolerance work would grow with their square.
+ * And no more than this many pieces: for circles of many turns within the tolerance work would grow
+ * with their square.
  */
 #define CROWD_PIECES 4096
 
-/* The motion that is said to be executed may be this many off: curves over several have the number of one. */
+/* The motion told may be so many off: curves over several have the number of one. */
 #define NUMBER_ROOM 16
 
 /* Steps to the nearest place of a curved curve. */
@@ -77,7 +78,7 @@ static double within_of(const struct tube_piece *piece)
     return piece->motion->tolerance_mm + piece->motion->cut_mm;
 }
 
-/* How near a step must come to the end of a piece: from an exact motion it may go straight into the next. */
+/* How near a step must come to the end of a piece: an exact motion may lead into the next. */
 static double within_end(const struct tube_piece *piece, const struct stride *step)
 {
     const double within_mm = maths_max(within_of(piece), piece->motion->turning_mm);
@@ -87,7 +88,10 @@ static double within_end(const struct tube_piece *piece, const struct stride *st
     return piece->motion->rounded ? within_mm : maths_max(within_mm, step->segment.length_mm / 2);
 }
 
-/* Goes past the end of a piece, from this part of the step on. Returns the first part at which it can, or NOT_ENTERED. */
+/*
+ * Goes past the end of a piece, from this part of the step on. Returns the first part at which it
+ * can, or NOT_ENTERED.
+ */
 static double pass_end(struct tube_piece *piece, const struct stride *step, double from)
 {
     const struct point end = tube_segment_end(&piece->segment);
@@ -99,8 +103,9 @@ static double pass_end(struct tube_piece *piece, const struct stride *step, doub
 }
 
 /*
- * A piece come to in this step (from the part entered on), or before. Returns the same of the next piece. Far from the end
- * of a piece, where most setpoints are, only their own distance from it is noted.
+ * A piece come to in this step (from the part entered on), or before. Returns the same of the next
+ * piece. Far from the end of a piece, where most setpoints are, only their own distance from it is
+ * noted.
  */
 static double follow_piece(struct tube_verifier *t, size_t k, const struct stride *step,
                            double entered, struct nearest *n)
@@ -141,7 +146,10 @@ static bool is_far(const struct tube_verifier *t, size_t k, size_t from)
     return ahead > CROWD || k > from + CROWD_PIECES;
 }
 
-/* All places that the setpoint may be at now. False: there is none; *n is then the nearest of those that were left. */
+/*
+ * All places that the setpoint may be at now. False: there is none; *n is then the nearest of those
+ * that were left.
+ */
 static bool follow(struct tube_verifier *t, const struct stride *step, struct nearest *n)
 {
     double entered = NOT_ENTERED;
@@ -234,7 +242,9 @@ static void note_beyond(struct tube_verifier *t, double beyond_mm, uint32_t line
     t->figures.beyond_line = line;
 }
 
-/* Could a setpoint so far from the piece raise any figure? A curve is looked at closely only then. */
+/*
+ * Could a setpoint so far from the piece raise any figure? A curve is looked at closely only then.
+ */
 static bool is_news(const struct tube_verifier *t, const struct tube_piece *piece,
                     double distance_mm)
 {
@@ -246,7 +256,7 @@ static bool is_news(const struct tube_verifier *t, const struct tube_piece *piec
              most_mm > t->figures.path_part * piece->motion->tolerance_mm));
 }
 
-/* The nearest of the places at which the setpoint may be; after it has left the path the nearest one left. */
+/* The nearest of the places at which the setpoint may be; off the path the nearest one left. */
 static void measure(struct tube_verifier *t, const struct point *p, struct nearest *n, bool left)
 {
     const struct tube_piece *piece = tube_path_at(&t->path, n->piece);
@@ -272,7 +282,10 @@ static void measure(struct tube_verifier *t, const struct point *p, struct neare
     }
 }
 
-/* The corner at the end of the first piece, if it is one. A tap turns before it, which is verified elsewhere. */
+/*
+ * The corner at the end of the first piece, if it is one. A tap turns before it, which is verified
+ * elsewhere.
+ */
 static void settle_corner(struct tube_verifier *t)
 {
     const struct tube_piece *piece = tube_path_at(&t->path, 0);
@@ -321,7 +334,9 @@ static bool is_believed(const struct tube_piece *piece, const struct stride *ste
                piece->motion->tolerance_mm;
 }
 
-/* The first piece that is believed, of those far ahead of the first one; t->active: there is none. */
+/*
+ * The first piece that is believed, of those far ahead of the first one; t->active: there is none.
+ */
 static size_t find_believed(struct tube_verifier *t, const struct stride *step)
 {
     size_t k = t->active;
@@ -337,7 +352,7 @@ static size_t find_believed(struct tube_verifier *t, const struct stride *step)
     return k;
 }
 
-/* Pieces far behind the motion that is executed are not gone back to, if their ends have been come to. */
+/* Pieces far behind the executed motion are not gone back to, if their ends were reached. */
 static void leave_crowd(struct tube_verifier *t, const struct stride *step)
 {
     size_t k = find_believed(t, step);
@@ -427,7 +442,9 @@ void tube_verifier_stop(struct tube_verifier *t)
     t->has_next = false;
 }
 
-/* The axes stand before this piece, which has not been come to: it must be near them all the same. */
+/*
+ * The axes stand before this piece, which has not been come to: it must be near them all the same.
+ */
 static void measure_rest(struct tube_verifier *t, const struct tube_piece *piece)
 {
     const double distance_mm = verifier_distance(&t->last, &piece->segment.start);

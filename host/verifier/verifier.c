@@ -6,7 +6,10 @@
 
 #include <string.h>
 
-/* Cycles from the one that begins a block on in which its junction shows, when no cycle ended at the junction. */
+/*
+ * Cycles from the one that begins a block on in which its junction shows, when no cycle ended at
+ * the junction.
+ */
 #define VERIFIER_JUNCTION_CYCLES 2
 
 void verifier_init(struct verifier *j, const struct machine *machine,
@@ -94,7 +97,9 @@ static double missed_end(const struct verifier_block *block)
     return verifier_distance(&end, &block->end);
 }
 
-/* Has the tap been as deep as the spindle lets it be? The deepest place is that of the last cycle. */
+/*
+ * Has the tap been as deep as the spindle lets it be? The deepest place is that of the last cycle.
+ */
 static bool has_turned(const struct verifier *j)
 {
     return j->block.turning_mm > 0 &&
@@ -216,7 +221,10 @@ static void verify_axes(struct verifier *j, const struct cycle_record *record)
     }
 }
 
-/* A setpoint of a path within a tolerance, which the tube verifies: only ends of programmed motions are hit exactly. */
+/*
+ * A setpoint of a path within a tolerance, which the tube verifies: only ends of programmed motions
+ * are hit exactly.
+ */
 static void verify_smoothed(struct verifier *j, const struct cycle_record *record,
                             const struct block *block)
 {
@@ -258,7 +266,10 @@ bool verifier_add(struct verifier *j, const struct cycle_record *record, const s
     return verify_tube(j, record);
 }
 
-/* A probing move may end early: where the axes have come to rest. That this is on its way has been seen by judge_path. */
+/*
+ * A probing move may end early: where the axes have come to rest. That this is on its way has been
+ * seen by judge_path.
+ */
 static void end_probing(struct verifier *j, const struct point *rest_at)
 {
     raise_to(&j->figures.landing_error_mm, verifier_distance(&j->cmd, rest_at));

@@ -1,11 +1,11 @@
 /*
- * The verifier of a run: looks at every setpoint that was sent and says whether the machine's limits and the program's
- * path were kept.
+ * The verifier of a run: looks at every setpoint that was sent and says whether the machine's
+ * limits and the program's path were kept.
  *
- * It knows nothing of the planner's reasoning. It reads the part program again, in step with the run, and compares
- * setpoints with the curves it finds there: motions in exact path by the numbers of the cycles, which must be right then;
- * motions within a tolerance, and the length of the path, by a place of its own (tube_verifier.h). Velocity, acceleration and
- * jerk it takes by differences:
+ * It knows nothing of the planner's reasoning. It reads the part program again, in step with the
+ * run, and compares setpoints with the curves it finds there: motions in exact path by the numbers
+ * of the cycles, which must be right then; motions within a tolerance, and the length of the path,
+ * by a place of its own (tube_verifier.h). Velocity, acceleration and jerk it takes by differences:
  *
  *     v_k = (x_k - x_{k-1}) / tau     a_k = (v_k - v_{k-1}) / tau     j_k = (a_k - a_{k-1}) / tau
  *
@@ -27,7 +27,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Limits are kept when the value is at most the limit times this: room for the rounding of differences. */
+/*
+ * Limits are kept when the value is at most the limit times this: room for the rounding of
+ * differences.
+ */
 #define VERIFIER_VELOCITY_RATIO     1.0001
 #define VERIFIER_ACCELERATION_RATIO 1.0001
 #define VERIFIER_JERK_RATIO         1.001
@@ -62,8 +65,8 @@ struct verifier_block {
     struct point end;
     double fraction; /* of the block, where the last setpoint was */
     bool probing;    /* it may end early: verifier_answer */
-    double
-        turning_mm; /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
+    /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
+    double turning_mm;
     bool
         rounded; /* a tolerance is programmed: the tube verifies it, whether it is a curve or not */
     bool landed; /* a cycle has ended it exactly */
@@ -86,8 +89,8 @@ struct verifier {
     struct tube_verifier tube;  /* with another one */
     bool rounds;                /* exact motions too are verified by the tube alone */
     struct vibration vibration; /* from setpoints to what the tube verifies; none: setpoints */
-    bool
-        strayed; /* the run executes motions that the program does not have, or not one after the other */
+    /* the run executes motions that the program does not have, or not one after the other */
+    bool strayed;
     bool program_ended;
     uint32_t read;         /* motions */
     struct point read_end; /* where the last one ends */
@@ -105,18 +108,21 @@ struct verifier {
 };
 
 /*
- * program: as the run has it, but with parameters of the verifier's own; source: over the same text. Both may go when
- * the verifier has gone.
+ * program: as the run has it, but with parameters of the verifier's own; source: over the same
+ * text. Both may go when the verifier has gone.
  */
 void verifier_init(struct verifier *j, const struct machine *machine,
                    const struct program_config *program, const struct source *source);
-/* Behind it: the same once more for another reading. rounds: exact motions too may be rounded, as the machine may round. */
+/*
+ * Behind it: the same once more for another reading. rounds: exact motions too may be rounded, as
+ * the machine may round.
+ */
 void verifier_follow(struct verifier *j, const struct machine *machine,
                      const struct program_config *program, const struct source *source,
                      bool rounds);
 /*
- * And then: the program has been planned ahead on a machine with these modes, so that the path is not the setpoints' but the
- * tool's, as the modes have it where the drives are at the setpoints.
+ * And then: the program has been planned ahead on a machine with these modes, so that the path is
+ * not the setpoints' but the tool's, as the modes have it where the drives are at the setpoints.
  */
 void verifier_follow_tool(struct verifier *j, const struct vibration_config *modes);
 void verifier_free(struct verifier *j);
@@ -125,15 +131,18 @@ void verifier_free(struct verifier *j);
 bool verifier_add(struct verifier *j, const struct cycle_record *record, const struct block *block);
 
 /*
- * What the program of the run has been told (G38, M66), before the first cycle behind that. Everything read until then
- * has been executed, but for the rest of a probing move.
+ * What the program of the run has been told (G38, M66), before the first cycle behind that.
+ * Everything read until then has been executed, but for the rest of a probing move.
  */
 void verifier_answer(struct verifier *j, const struct program_answer *answer);
 
 /* After the last cycle. completed: the program claims to have been executed to its end. */
 void verifier_finish(struct verifier *j, bool completed);
 
-/* Motions with a length that the program has beyond those executed, or -1: it has fewer. 0 after a complete run. */
+/*
+ * Motions with a length that the program has beyond those executed, or -1: it has fewer. 0 after a
+ * complete run.
+ */
 int verifier_get_missing(const struct verifier *j);
 
 #endif

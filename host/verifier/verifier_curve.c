@@ -12,7 +12,10 @@ double verifier_distance(const struct point *a, const struct point *b)
     return maths_sqrt(sum);
 }
 
-/* Nearest point of the line from a to b: a + f (b - a), f = (p - a)(b - a) / |b - a|^2, kept within 0 ... 1. */
+/*
+ * Nearest point of the line from a to b: a + f (b - a), f = (p - a)(b - a) / |b - a|^2, kept within
+ * 0 ... 1.
+ */
 static double line_distance(const struct curve *c, const struct point *p, double *fraction)
 {
     double dot = 0, square = 0, sum = 0;
@@ -66,8 +69,9 @@ static double arc_distance(const struct curve *c, const struct point *p, double 
 }
 
 /*
- * The normals of an involute touch its base circle. So seen from p, unrolled by phi = sqrt((d / r)^2 - 1) with the string
- * at the angle t = angle of p + h atan phi, the nearest point has the same t, and lies r |phi - h (t - heading)| away.
+ * The normals of an involute touch its base circle. So seen from p, unrolled by phi = sqrt((d /
+ * r)^2 - 1) with the string at the angle t = angle of p + h atan phi, the nearest point has the
+ * same t, and lies r |phi - h (t - heading)| away.
  */
 static double involute_nearest(const struct curve *c, double x, double y)
 {
@@ -94,8 +98,8 @@ static double involute_distance(const struct curve *c, const struct point *p, do
 }
 
 /*
- * Of any curve the nearest place by Newton's steps s += (p - x) t / t^2 from the fraction's place: between two setpoints it hardly
- * bends.
+ * Of any curve the nearest place by Newton's steps s += (p - x) t / t^2 from the fraction's place:
+ * between two setpoints it hardly bends.
  */
 #define NEAREST_STEPS 8
 
@@ -132,9 +136,9 @@ double verifier_curve_distance(const struct curve *c, const struct point *p, dou
 }
 
 /*
- * Sagitta of the chord in the plane of the arc: h = R - sqrt(R^2 - l^2 / 4), written without cancellation as
- * h = (l^2 / 4) / (R + sqrt(R^2 - l^2 / 4)). Where the radius changes, R is its mean over the step: the chord's middle
- * then lies h off the curve, up to terms of third order.
+ * Sagitta of the chord in the plane of the arc: h = R - sqrt(R^2 - l^2 / 4), written without
+ * cancellation as h = (l^2 / 4) / (R + sqrt(R^2 - l^2 / 4)). Where the radius changes, R is its
+ * mean over the step: the chord's middle then lies h off the curve, up to terms of third order.
  */
 static double arc_chord_error(const struct curve_arc *arc, const struct point *from,
                               const struct point *to)
@@ -150,8 +154,8 @@ static double arc_chord_error(const struct curve_arc *arc, const struct point *f
 }
 
 /*
- * An involute is farthest from a chord where it is parallel to it: at the headings of the chord and half a turn on. Of a
- * step of more than a turn the last turn counts, the widest.
+ * An involute is farthest from a chord where it is parallel to it: at the headings of the chord and
+ * half a turn on. Of a step of more than a turn the last turn counts, the widest.
  */
 static double involute_chord_error(const struct curve *c, const struct point *from,
                                    const struct point *to)

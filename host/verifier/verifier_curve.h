@@ -10,11 +10,12 @@
 double verifier_distance(const struct point *a, const struct point *b);
 
 /*
- * Distance of p from c. *fraction: where on the curve, 0 ... 1; in: near which fraction to look, because an arc of
- * several turns passes the same angle again; out: where the nearest point is.
+ * Distance of p from c. *fraction: where on the curve, 0 ... 1; in: near which fraction to look,
+ * because an arc of several turns passes the same angle again; out: where the nearest point is.
  *
- * For an arc the point compared with has the same angle, which is the nearest one of a circle and never nearer than
- * the nearest of a helix or an arc of changing radius: what is returned is an upper bound there.
+ * For an arc the point compared with has the same angle, which is the nearest one of a circle and
+ * never nearer than the nearest of a helix or an arc of changing radius: what is returned is an
+ * upper bound there.
  */
 double verifier_curve_distance(const struct curve *c, const struct point *p, double *fraction);
 

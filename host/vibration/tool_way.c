@@ -37,7 +37,10 @@ static double square_from(const struct point *from, const struct point *to,
     return square;
 }
 
-/* The nearest chord from the one it was at on, never one behind: the first of those that are as near. */
+/*
+ * The nearest chord from the one it was at on, never one behind: the first of those that are as
+ * near.
+ */
 static double find_square(struct tool_way *w, const struct point *tool)
 {
     const uint64_t oldest = w->count > TOOL_WAY_KEPT ? w->count - TOOL_WAY_KEPT : 0;

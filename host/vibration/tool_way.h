@@ -1,6 +1,6 @@
 /*
- * How far a point is from the way that was commanded, whenever it comes there: what is left behind along the way does
- * not count, as it does not on the part.
+ * How far a point is from the way that was commanded, whenever it comes there: what is left behind
+ * along the way does not count, as it does not on the part.
  */
 #ifndef TAKT_VIBRATION_TOOL_WAY_H
 #define TAKT_VIBRATION_TOOL_WAY_H

@@ -168,8 +168,9 @@ static void add_terms(double b[2][2], double sum[2][2])
 }
 
 /*
- * away'' + 2 d w away' + w^2 away = 0 over a cycle, with the rate counted in w: exp(w t [0 1; -1 -2d]), by a part of the
- * cycle that is small against the oscillation, and doubled (Moler and Van Loan 2003, method 3).
+ * away'' + 2 d w away' + w^2 away = 0 over a cycle, with the rate counted in w: exp(w t [0 1; -1
+ * -2d]), by a part of the cycle that is small against the oscillation, and doubled (Moler and Van
+ * Loan 2003, method 3).
  */
 static void set_advance(struct vibration_mode *mode, double ratio, double cycle_s)
 {
@@ -251,8 +252,9 @@ static double ratio_at(const struct vibration_table *table, unsigned mode, const
 }
 
 /*
- * The foot goes at one velocity from cycle to cycle; where that changes, the oscillator is left behind by as much. Where it
- * is and how fast it goes stay what they are when its frequency changes.
+ * The foot goes at one velocity from cycle to cycle; where that changes, the oscillator is left
+ * behind by as much. Where it is and how fast it goes stay what they are when its frequency
+ * changes.
  */
 static double follow_mode(struct vibration_mode *mode, double ratio, double change_mm_s,
                           double cycle_s)

@@ -1,6 +1,7 @@
 /*
- * A machine that is not stiff: between motor and tool of an axis lie springs. Each mode is a damped oscillator whose foot
- * the drive moves; what the tool is off the drive's place is the sum of what its modes are.
+ * A machine that is not stiff: between motor and tool of an axis lie springs. Each mode is a damped
+ * oscillator whose foot the drive moves; what the tool is off the drive's place is the sum of what
+ * its modes are.
  */
 #ifndef TAKT_VIBRATION_VIBRATION_H
 #define TAKT_VIBRATION_VIBRATION_H
@@ -16,13 +17,19 @@
 enum vibration_number {
     VIBRATION_HZ,      /* of the undamped oscillator; 0: there is no such mode */
     VIBRATION_DAMPING, /* ratio, 0 ... below 1 */
-    VIBRATION_PART, /* how much of it the tool sees; those of an axis whose foot is all that moves it have the sum 1 */
+    /*
+     * how much of it the tool sees; those of an axis whose foot is all that moves it have the sum 1
+     */
+    VIBRATION_PART,
     VIBRATION_NUMBERS
 };
 
 #define VIBRATION_PLACES 5 /* of a table: evenly from its first place to its last */
 
-/* How the frequencies of an axis' modes change along an axis: with the overhang of a ram, say. All zero: they do not. */
+/*
+ * How the frequencies of an axis' modes change along an axis: with the overhang of a ram, say. All
+ * zero: they do not.
+ */
 struct vibration_table {
     uint32_t along;      /* enum axis, linear */
     double places_mm[2]; /* of the drive of that axis, first and last; the same: no table */
@@ -32,10 +39,16 @@ struct vibration_table {
 
 struct vibration_config {
     double mode[AXIS_LINEAR_COUNT][VIBRATION_MODES * VIBRATION_NUMBERS];
-    /* By so much the frequencies may be others than told: for planning ahead; what swings does not know of it. */
+    /*
+     * By so much the frequencies may be others than told: for planning ahead; what swings does not
+     * know of it.
+     */
     double uncertain_percent[AXIS_LINEAR_COUNT];
     struct vibration_table table[AXIS_LINEAR_COUNT]; /* of the modes of this axis */
-    /* Along which other axes the tool goes when this one swings: parts of how far it does. Its own is 0. */
+    /*
+     * Along which other axes the tool goes when this one swings: parts of how far it does. Its own
+     * is 0.
+     */
     double across[AXIS_LINEAR_COUNT][AXIS_LINEAR_COUNT];
 };
 

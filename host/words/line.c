@@ -45,7 +45,10 @@ bool line_is_assigned(const struct line *l, size_t at)
     return l->text[skip_spaces(l, at)] == '=';
 }
 
-/* Behind the bracket or parenthesis that closes the one at a place; the end of the line when none does. */
+/*
+ * Behind the bracket or parenthesis that closes the one at a place; the end of the line when none
+ * does.
+ */
 static size_t skip_nested(const struct line *l, size_t at, char open, char close)
 {
     unsigned depth = 0;

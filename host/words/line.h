@@ -59,7 +59,10 @@ bool line_is_keyword(const struct line *l, const struct line_word *w, const char
 /* Spaces take the place of a word, so that all others keep their columns. */
 void line_blank(struct line *l, struct line_word *w);
 
-/* A text takes the place of a word; the words have to be read again if it is longer. False: no room. */
+/*
+ * A text takes the place of a word; the words have to be read again if it is longer. False: no
+ * room.
+ */
 bool line_replace(struct line *l, struct line_word *w, const char *text);
 
 /* At the end, or in front of a comment that reaches to the end; with a space before it. */
@@ -86,7 +89,10 @@ const char *line_checksum(const struct line *l);
 /* MSG "text", as Eding CNC has it: the text and its length. NULL: no such line. */
 const char *line_message(const struct line *l, size_t *length);
 
-/* PRINT_START BED=60, as Klipper has it: a name of three letters or more begins the line. 0: no such line. */
+/*
+ * PRINT_START BED=60, as Klipper has it: a name of three letters or more begins the line. 0: no
+ * such line.
+ */
 size_t line_macro_length(const struct line *l);
 
 /* (py, ...) and (pyrun, ...), which have LinuxCNC run Python. */

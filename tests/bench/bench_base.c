@@ -1,6 +1,6 @@
 /*
- * Nanoseconds per call of the functions of firmware/base, the best of several rounds. Not a test: a figure depends
- * on the machine.
+ * Nanoseconds per call of the functions of firmware/base, the best of several rounds. Not a test: a
+ * figure depends on the machine.
  */
 #include "base/decimal.h"
 #include "base/fnv.h"

@@ -1,4 +1,7 @@
-/* What position-error correction costs: nanoseconds a cycle, layer by layer, on a way through the volume. */
+/*
+ * What position-error correction costs: nanoseconds a cycle, layer by layer, on a way through the
+ * volume.
+ */
 #define _POSIX_C_SOURCE 200809L
 
 #include "correction/correction.h"

@@ -1,9 +1,10 @@
 /*
- * Lines per second of the interpreter on a program of a million plain G1 X Y Z lines, beside LinuxCNC's `rs274 -g` on
- * the same file; and the memory each takes for a thousand lines and for a million. Not a test: a figure depends on
- * the machine.
+ * Lines per second of the interpreter on a program of a million plain G1 X Y Z lines, beside
+ * LinuxCNC's `rs274 -g` on the same file; and the memory each takes for a thousand lines and for a
+ * million. Not a test: a figure depends on the machine.
  *
- * Ours makes canonical moves and throws them away; rs274 also writes its canonical calls as text, to nowhere.
+ * Ours makes canonical moves and throws them away; rs274 also writes its canonical calls as text,
+ * to nowhere.
  */
 #define _DEFAULT_SOURCE
 

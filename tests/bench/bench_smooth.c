@@ -1,7 +1,7 @@
 /*
- * Blocks per second of the smoother alone (G64 P), and the time it takes for one piece of curve: of the program given as an
- * argument, which must ask for G64 P, or of one made here. The program is read before, and the best of some rounds
- * counts. Not a test: a figure depends on the machine.
+ * Blocks per second of the smoother alone (G64 P), and the time it takes for one piece of curve: of
+ * the program given as an argument, which must ask for G64 P, or of one made here. The program is
+ * read before, and the best of some rounds counts. Not a test: a figure depends on the machine.
  *
  *     bench_smooth [PROGRAM]
  */
@@ -51,7 +51,10 @@ static long read_file(void *context, char *buffer, size_t size)
     return count == 0 ? SOURCE_END : (long)count;
 }
 
-/* A line that goes to and fro over a surface of waves, in steps of some tenths, as CAM systems write it. */
+/*
+ * A line that goes to and fro over a surface of waves, in steps of some tenths, as CAM systems
+ * write it.
+ */
 static FILE *made_program(void)
 {
     FILE *file = tmpfile();

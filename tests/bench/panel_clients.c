@@ -1,5 +1,6 @@
 /*
- * Clients of a panel that poll as fast as they can, each a thread with libmodbus: how long their replies take.
+ * Clients of a panel that poll as fast as they can, each a thread with libmodbus: how long their
+ * replies take.
  *
  *     panel_clients PORT CLIENTS SECONDS
  */

@@ -1,4 +1,6 @@
-/* What tests of the CAN drivers share: frames with numbers, sent and seen on the model of the bus. */
+/*
+ * What tests of the CAN drivers share: frames with numbers, sent and seen on the model of the bus.
+ */
 #ifndef TAKT_TESTS_CAN_BENCH_H
 #define TAKT_TESTS_CAN_BENCH_H
 

@@ -237,7 +237,10 @@ static bool takes_part(void)
            !can_model.is_absent;
 }
 
-/* The lowest identifier wins, of equal ones the lowest mailbox; TXFP would make it the order of requests. */
+/*
+ * The lowest identifier wins, of equal ones the lowest mailbox; TXFP would make it the order of
+ * requests.
+ */
 bool can_model_begin(struct can_frame *frame)
 {
     unsigned first = NOBODY;

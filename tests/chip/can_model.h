@@ -1,5 +1,6 @@
 /*
- * A CAN controller (bxCAN in can_model.c, FDCAN in fdcan_model.c) and the bus behind it. The test says when the bus is free for a frame and what the other nodes send.
+ * A CAN controller (bxCAN in can_model.c, FDCAN in fdcan_model.c) and the bus behind it. The test
+ * says when the bus is free for a frame and what the other nodes send.
  */
 #ifndef TAKT_TESTS_CAN_MODEL_H
 #define TAKT_TESTS_CAN_MODEL_H
@@ -10,15 +11,21 @@
 struct can_model {
     bool is_absent;   /* every register reads 0 */
     bool bus_is_idle; /* the receive pin shows recessive bits: a transceiver is there */
-    unsigned
-        extended_or_remote; /* of the next received frame: 1 an identifier of 29 bits, 2 a remote frame */
+    /* of the next received frame: 1 an identifier of 29 bits, 2 a remote frame */
+    unsigned extended_or_remote;
 };
 
 extern struct can_model can_model;
 
-/* The bus is free: the controller begins to send what wins among its mailboxes. False: nothing is to be sent. */
+/*
+ * The bus is free: the controller begins to send what wins among its mailboxes. False: nothing is
+ * to be sent.
+ */
 bool can_model_begin(struct can_frame *frame);
-/* That frame has been sent and acknowledged, or it was lost and is still to be sent unless it has been called back. */
+/*
+ * That frame has been sent and acknowledged, or it was lost and is still to be sent unless it has
+ * been called back.
+ */
 void can_model_end(bool acknowledged);
 /* Both. */
 bool can_model_transfer(struct can_frame *frame);

@@ -1,6 +1,7 @@
 /*
- * A chip as far as its drivers touch it (f405_model.c, h743_model.c): registers that behave as the reference manual says, so that the drivers
- * run on the host as they are. It links in place of hal/stm32/chip_memory.c.
+ * A chip as far as its drivers touch it (f405_model.c, h743_model.c): registers that behave as the
+ * reference manual says, so that the drivers run on the host as they are. It links in place of
+ * hal/stm32/chip_memory.c.
  *
  * Time is the number of reads: what the hardware needs time for is there a number of reads later.
  */

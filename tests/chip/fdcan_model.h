@@ -13,7 +13,8 @@ struct fdcan_model {
 extern struct fdcan_model fdcan_model;
 
 /*
- * The bit of fast data. false: classical CAN alone is spoken. offset: of the second sample behind the delay; 0: none.
+ * The bit of fast data. false: classical CAN alone is spoken. offset: of the second sample behind
+ * the delay; 0: none.
  */
 bool fdcan_model_get_data_bit(struct can_model_bit *bit, unsigned *offset);
 

@@ -1,4 +1,7 @@
-/* Crystal, PLL 1, buses, supply and wait states of an STM32H743, with the data sheet's limits (DS12110, RM0433). */
+/*
+ * Crystal, PLL 1, buses, supply and wait states of an STM32H743, with the data sheet's limits
+ * (DS12110, RM0433).
+ */
 #include "chip_model.h"
 #include "clock_model.h"
 #include "stm32h743/rcc.h"

@@ -1,4 +1,7 @@
-/* The flash controller of the second bank, its last two sectors, and the code over each of its words (RM0433, chapter 4). */
+/*
+ * The flash controller of the second bank, its last two sectors, and the code over each of its
+ * words (RM0433, chapter 4).
+ */
 #include "h743_flash_model.h"
 #include "chip_model.h"
 #include "clock_model.h"

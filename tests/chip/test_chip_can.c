@@ -70,7 +70,10 @@ static void test_what_is_taken_back_goes_before_others_of_its_identifier(void)
     expect(0x606, 4);
 }
 
-/* The least urgent frame is on the bus when it is wanted back, and gets through: it must not be sent again. */
+/*
+ * The least urgent frame is on the bus when it is wanted back, and gets through: it must not be
+ * sent again.
+ */
 static void test_a_frame_that_gets_through_while_it_is_called_back_is_sent_once(void)
 {
     struct can_frame frame;

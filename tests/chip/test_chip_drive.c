@@ -1,4 +1,7 @@
-/* A drive's motor at the timers of the chip: pulses, encoder, index and switches, and the drive's firmware on them. */
+/*
+ * A drive's motor at the timers of the chip: pulses, encoder, index and switches, and the drive's
+ * firmware on them.
+ */
 #include "chip_model.h"
 #include "servo/servo.h"
 #include "stm32/pwm.h"
@@ -201,7 +204,10 @@ static void test_switches_and_index_have_latched_the_encoder(void)
 
 /* ---- the drive on it ---- */
 
-/* A motor without friction behind the pulses, with an index pulse a turn, and a switch above 3.2 mm. */
+/*
+ * A motor without friction behind the pulses, with an index pulse a turn, and a switch above 3.2
+ * mm.
+ */
 static struct mechanics {
     double at_mm, velocity_mm_s;
     int64_t counts;

@@ -1,4 +1,7 @@
-/* The node of a drive's image (hal/stm32drive/drive_node.h) on the chip's model: over its CAN controller, with its flash. */
+/*
+ * The node of a drive's image (hal/stm32drive/drive_node.h) on the chip's model: over its CAN
+ * controller, with its flash.
+ */
 #include "can_model.h"
 #include "canopen/sdo.h"
 #include "chip_model.h"

@@ -96,7 +96,8 @@ static void test_a_controller_that_never_ends_is_given_up(void)
     TEST_ASSERT_FALSE(program(0, 0, "a"));
     TEST_ASSERT_EQUAL(FLASH_BUSY, flash.problem);
     TEST_ASSERT_LESS_THAN(100000, chip_model_reads());
-    chip_model_reset(); /* what it leaves is not locked: the model refuses to be written while busy */
+    /* what it leaves is not locked: the model refuses to be written while busy */
+    chip_model_reset();
 }
 
 static void test_the_watchdog_has_time_for_an_erase_and_is_short_again_afterwards(void)

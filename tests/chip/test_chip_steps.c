@@ -33,7 +33,10 @@ void tearDown(void)
 {
 }
 
-/* A step counts when its pin rises; the direction has stood for a slot, and the pulse and the pause are one each. */
+/*
+ * A step counts when its pin rises; the direction has stood for a slot, and the pulse and the pause
+ * are one each.
+ */
 static void rise(unsigned axis)
 {
     const bool backwards = (driver.pins >> (axis + 8) & 1U) != 0;

@@ -1,4 +1,7 @@
-/* CAN FD: two rates, long frames, filters. What classical frames do is in test_chip_can.c, which runs on this model too. */
+/*
+ * CAN FD: two rates, long frames, filters. What classical frames do is in test_chip_can.c, which
+ * runs on this model too.
+ */
 #include "chip_model.h"
 #include "fdcan_model.h"
 #include "stm32/can_controller.h"
@@ -106,7 +109,10 @@ static void test_without_a_data_rate_all_frames_are_classical(void)
     TEST_ASSERT_FALSE(fdcan_model.sent_fd);
 }
 
-/* Both rates exact, of the same quanta, sampled where SocketCAN does; the delay is made up for at that point. */
+/*
+ * Both rates exact, of the same quanta, sampled where SocketCAN does; the delay is made up for at
+ * that point.
+ */
 static void check_rates(uint32_t nominal, double nominal_sample, uint32_t data, double data_sample)
 {
     struct can_model_bit slow, fast;

@@ -1,4 +1,7 @@
-/* Settings in the flash of an STM32H743: power that fails in a word. What both chips do is in test_chip_flash.c. */
+/*
+ * Settings in the flash of an STM32H743: power that fails in a word. What both chips do is in
+ * test_chip_flash.c.
+ */
 #include "chip_model.h"
 #include "flash_model.h"
 #include "h743_flash_model.h"

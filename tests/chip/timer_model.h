@@ -1,11 +1,17 @@
-/* The timers of a drive: pulses (TIM1), ticks (TIM2), encoder (TIM3); and the pins of ports B and C. */
+/*
+ * The timers of a drive: pulses (TIM1), ticks (TIM2), encoder (TIM3); and the pins of ports B and
+ * C.
+ */
 #ifndef TAKT_TESTS_TIMER_MODEL_H
 #define TAKT_TESTS_TIMER_MODEL_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What the pulses of the channels say: the part of the time that channel 1 is high, less that of channel 2. */
+/*
+ * What the pulses of the channels say: the part of the time that channel 1 is high, less that of
+ * channel 2.
+ */
 double timer_model_get_torque(void);
 
 /* The pin of the break is low. */

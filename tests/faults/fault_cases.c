@@ -1,5 +1,6 @@
 /*
- * The faults, and what is to come of each. The program moves all three axes from the moment the drives are enabled.
+ * The faults, and what is to come of each. The program moves all three axes from the moment the
+ * drives are enabled.
  */
 #include "fault_run.h"
 

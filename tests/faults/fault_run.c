@@ -34,8 +34,8 @@
 #define MOVING_MM_PER_CYCLE 1e-4
 
 /*
- * A straight line out and back at 100 mm/s and the axes' limits: the three axes have different velocities, so drives
- * that brake each for themselves leave it.
+ * A straight line out and back at 100 mm/s and the axes' limits: the three axes have different
+ * velocities, so drives that brake each for themselves leave it.
  */
 static const char program[] = "G21 G90 G64 F7200 G1 X100 Y60 Z-30\nX0 Y0 Z0\nM2\n";
 static const double line_mm[DRIVES] = {100, 60, -30};
@@ -203,7 +203,9 @@ static void cycle(struct world *w)
     virtual_drives_step(&w->drives, CYCLE_NS);
 }
 
-/* Distance of the tool from the straight line through 0: |p - (p u) u| with u the line's direction. */
+/*
+ * Distance of the tool from the straight line through 0: |p - (p u) u| with u the line's direction.
+ */
 static double distance_mm(const double at_mm[DRIVES])
 {
     double length2 = 0, along = 0, distance2 = 0;

@@ -1,6 +1,6 @@
 /*
- * One fault, tried: the real controller runs a program on three virtual drives and the embedded bus, the fault script
- * takes effect, and everything goes on until nothing moves any more.
+ * One fault, tried: the real controller runs a program on three virtual drives and the embedded
+ * bus, the fault script takes effect, and everything goes on until nothing moves any more.
  */
 #ifndef TAKT_TESTS_FAULT_RUN_H
 #define TAKT_TESTS_FAULT_RUN_H

@@ -1,5 +1,6 @@
 /*
- * Every fault of fault_cases.c, tried on the real controller: what comes of it, and that no axis is left moving.
+ * Every fault of fault_cases.c, tried on the real controller: what comes of it, and that no axis is
+ * left moving.
  */
 #include "fault_run.h"
 #include "unity.h"

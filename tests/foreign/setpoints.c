@@ -1,6 +1,7 @@
 /*
- * Text to setpoints, without drives: prints the digest of every setpoint of a program, and how many there were. Small enough
- * to be built for another processor in seconds. Reads the program from the file it is given.
+ * Text to setpoints, without drives: prints the digest of every setpoint of a program, and how many
+ * there were. Small enough to be built for another processor in seconds. Reads the program from the
+ * file it is given.
  */
 #include "base/fnv.h"
 #include "cutter_compensation/cutter_compensation.h"

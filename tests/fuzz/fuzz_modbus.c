@@ -1,9 +1,11 @@
 /*
- * Any bytes as what a client of the panel sends, on TCP and on a serial line, behind them the panel as it is.
+ * Any bytes as what a client of the panel sends, on TCP and on a serial line, behind them the panel
+ * as it is.
  *
- * The first byte says how the others are taken: as a TCP stream, as a serial line, as requests whose frame and checksum
- * are made right here so that they reach the registers. Nothing may crash, and three things must hold: replies fit
- * their frame; a request that is refused has ordered and stored nothing; what is ordered is within the table.
+ * The first byte says how the others are taken: as a TCP stream, as a serial line, as requests
+ * whose frame and checksum are made right here so that they reach the registers. Nothing may crash,
+ * and three things must hold: replies fit their frame; a request that is refused has ordered and
+ * stored nothing; what is ordered is within the table.
  */
 #include "modbus/crc.h"
 #include "modbus/rtu.h"

@@ -1,10 +1,10 @@
 /*
- * libFuzzer's target for everything a part program meets before the axes: the interpreter, cutter compensation, and
- * the planner behind them.
+ * libFuzzer's target for everything a part program meets before the axes: the interpreter, cutter
+ * compensation, and the planner behind them.
  *
- * Any bytes whatever are read to their end. Every line gives moves or an error that says where; every move is
- * inside the travel, and the planner makes finite, complete profiles of them. The bytes also choose, by their digest, how they
- * are read, so that one corpus serves for all.
+ * Any bytes whatever are read to their end. Every line gives moves or an error that says where;
+ * every move is inside the travel, and the planner makes finite, complete profiles of them. The
+ * bytes also choose, by their digest, how they are read, so that one corpus serves for all.
  */
 #include "base/maths.h"
 #include "cutter_compensation/cutter_compensation.h"
@@ -22,7 +22,10 @@
 #define MOVES_MAX 1000
 /* There are never more errors than lines, and lines repeat only in loops. */
 #define ERRORS_MAX 1000
-/* After this many bytes the source fails, in loops that move nothing: that is a fault of its own to be tried. */
+/*
+ * After this many bytes the source fails, in loops that move nothing: that is a fault of its own to
+ * be tried.
+ */
 #define READ_MAX 200000U
 
 /* Called by libFuzzer with every input. */
@@ -97,7 +100,10 @@ static void check_move(const struct move *move)
     }
 }
 
-/* Columns are those of the text: comments count, and may make a line longer than what is read of it. */
+/*
+ * Columns are those of the text: comments count, and may make a line longer than what is read of
+ * it.
+ */
 static size_t longest_line(const uint8_t *data, size_t size)
 {
     size_t longest = 0;
@@ -189,7 +195,10 @@ static void check_warnings(void)
     }
 }
 
-/* A probe that answers half way and comes to rest a little further, or never does; an input that is read, or not. */
+/*
+ * A probe that answers half way and comes to rest a little further, or never does; an input that is
+ * read, or not.
+ */
 static void answer(const struct move *asked, const struct point *from)
 {
     struct program_answer a = {

@@ -1,5 +1,6 @@
 /*
- * A Modbus TCP server as libmodbus's own examples make one: select, modbus_receive, modbus_reply. Prints its port.
+ * A Modbus TCP server as libmodbus's own examples make one: select, modbus_receive, modbus_reply.
+ * Prints its port.
  */
 #define _DEFAULT_SOURCE
 

@@ -1,6 +1,6 @@
 /*
- * How far setpoints are from curves, and corners from the setpoints' line: over all axes, where a degree counts like a
- * millimetre.
+ * How far setpoints are from curves, and corners from the setpoints' line: over all axes, where a
+ * degree counts like a millimetre.
  */
 #ifndef TAKT_TESTS_CHAIN_DISTANCE_H
 #define TAKT_TESTS_CHAIN_DISTANCE_H

@@ -1,5 +1,6 @@
 /*
- * A random program of everything that takt correct writes, in all planes, units and coordinate systems, by its seed.
+ * A random program of everything that takt correct writes, in all planes, units and coordinate
+ * systems, by its seed.
  */
 #ifndef TAKT_TESTS_OFFLINE_PROGRAM_H
 #define TAKT_TESTS_OFFLINE_PROGRAM_H

@@ -1,7 +1,8 @@
 /*
- * Random chains of moves from a fixed seed, and setpoints verified by their differences: for tests of planner and motion
- * together. The families are chosen for what breaks planners: corners of any angle, nearly collinear blocks, blocks
- * shorter than a cycle, zigzags, arcs into arcs, helices, arcs whose two radii differ.
+ * Random chains of moves from a fixed seed, and setpoints verified by their differences: for tests
+ * of planner and motion together. The families are chosen for what breaks planners: corners of any
+ * angle, nearly collinear blocks, blocks shorter than a cycle, zigzags, arcs into arcs, helices,
+ * arcs whose two radii differ.
  */
 #ifndef TAKT_TESTS_RANDOM_CHAIN_H
 #define TAKT_TESTS_RANDOM_CHAIN_H
@@ -60,7 +61,10 @@ static inline struct move chain_line(struct chain *c, double length_mm, double r
     return m;
 }
 
-/* An arc that leaves along the heading; its end may lie off the circle by a factor, and it may rise. */
+/*
+ * An arc that leaves along the heading; its end may lie off the circle by a factor, and it may
+ * rise.
+ */
 static inline struct move chain_arc(struct chain *c, double off_circle, double rise_mm)
 {
     const double radius = chain_decades(c, -1, 2);

@@ -1,6 +1,7 @@
 /*
- * Random machines, and random schedules of what an operator does: steps and ramps of the feed override, holds, the rapid
- * override; and beside these, single block, stops, waits at the ends of blocks, and a reset.
+ * Random machines, and random schedules of what an operator does: steps and ramps of the feed
+ * override, holds, the rapid override; and beside these, single block, stops, waits at the ends of
+ * blocks, and a reset.
  */
 #ifndef TAKT_TESTS_RANDOM_SCHEDULE_H
 #define TAKT_TESTS_RANDOM_SCHEDULE_H
@@ -18,7 +19,10 @@ struct schedule {
     uint64_t free;  /* cycles since anything was held */
 };
 
-/* A machine to try it on, with every law: its cycle; its axes. What is drawn in between is the test's. */
+/*
+ * A machine to try it on, with every law: its cycle; its axes. What is drawn in between is the
+ * test's.
+ */
 static inline void schedule_random_control(struct chain *c, struct plan_limits *l)
 {
     static const double cycles_s[] = {5e-4, 1e-3, 2e-3, 4e-3};

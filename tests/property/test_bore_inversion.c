@@ -1,6 +1,6 @@
 /*
- * The start angle of a hole-milling spiral, found from the distance of its start: for random base circles, numbers of
- * turns and starts, also within a nanometre of the centre and of the circle.
+ * The start angle of a hole-milling spiral, found from the distance of its start: for random base
+ * circles, numbers of turns and starts, also within a nanometre of the centre and of the circle.
  *
  * test_bore_inversion NUMBER tries this many instead of RUNS.
  */

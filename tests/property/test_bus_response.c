@@ -30,7 +30,10 @@ static uint32_t draw(uint32_t range)
     return (uint32_t)(state >> 33) % range;
 }
 
-/* Identifiers rise, so that none is there twice. lengths: data have fewer bytes; periods are as much longer. */
+/*
+ * Identifiers rise, so that none is there twice. lengths: data have fewer bytes; periods are as
+ * much longer.
+ */
 static unsigned make_set(struct bus_message *messages, unsigned lengths)
 {
     unsigned count = 2 + draw(MESSAGES_MAX - 1);

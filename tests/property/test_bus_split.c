@@ -1,6 +1,7 @@
 /*
- * Random machines at 0.5, 0.25 and other cycles: drives that move to a second bus never raise what is asked of either bus,
- * in bits or in the longest response, above what one bus had to carry; and what the advice says is so.
+ * Random machines at 0.5, 0.25 and other cycles: drives that move to a second bus never raise what
+ * is asked of either bus, in bits or in the longest response, above what one bus had to carry; and
+ * what the advice says is so.
  */
 #include "config/bus_advice.h"
 #include "machine/machine_check.h"

@@ -1,6 +1,6 @@
 /*
- * Digital integration on random circles and lines: what it really errs by, beside the bounds that seed 002 gives. Every
- * case is a fixed seed; a failure names it.
+ * Digital integration on random circles and lines: what it really errs by, beside the bounds that
+ * seed 002 gives. Every case is a fixed seed; a failure names it.
  */
 #include "accuracy/bounds.h"
 #include "base/maths.h"
@@ -51,7 +51,9 @@ static struct circle random_circle(unsigned n)
     double acceleration = random_decades(1, 4);
     struct circle c = {.radius_mm = random_decades(-1, 3)};
 
-    /* V^2 / R = a, or slower: dphi = V dt / R; at least 1e-3, below which rounding is all there is */
+    /*
+     * V^2 / R = a, or slower: dphi = V dt / R; at least 1e-3, below which rounding is all there is
+     */
     c.angle_rad = maths_sqrt(acceleration / c.radius_mm) * CYCLE_S * random_between(0.2, 1);
     c.angle_rad = maths_clamp(c.angle_rad, 1e-3, 0.2);
     c.sweep_rad = random_between(0.1, 2 * MATHS_TWO_PI) * (random_between(0, 1) < 0.5 ? -1 : 1);
@@ -85,7 +87,9 @@ static struct rotation_errors rotate_round(const struct circle *c, double quantu
     return errors;
 }
 
-/* What rounding of doubles adds: an ulp of the radius a step, and of the angles that are compared. */
+/*
+ * What rounding of doubles adds: an ulp of the radius a step, and of the angles that are compared.
+ */
 static double rounding_mm(const struct circle *c)
 {
     return 2.3e-16 * c->radius_mm * ((double)c->steps + 20);
@@ -120,7 +124,10 @@ static void test_rotation_errs_by_less_than_its_bounds_along_and_across_the_circ
         "rotation, %d arcs: along %.4f ... %.6f of N R dphi^3 / 6, across %.4f ... %.6f of the "
         "bound (%.6f of N R dphi^4 / 8)\n",
         CASES, least_along, along, least_across, across, page);
-    /* The page's figure for the growth is the first term of a series: over a turn it is exceeded, by a little. */
+    /*
+     * The page's figure for the growth is the first term of a series: over a turn it is exceeded,
+     * by a little.
+     */
     TEST_ASSERT_TRUE(page > 1.0 && page < 1.01);
 }
 
@@ -224,7 +231,10 @@ static struct {
     unsigned aimed;
 } lines;
 
-/* While the end rule acts: V_end (N - 1) / N < V <= V_end, but for what truncation has taken from each axis's way. */
+/*
+ * While the end rule acts: V_end (N - 1) / N < V <= V_end, but for what truncation has taken from
+ * each axis's way.
+ */
 static void check_aimed(const struct line_case *c, double way_mm, double loss_ulp)
 {
     double ratio = way_mm / c->config.end_mm;
@@ -287,7 +297,10 @@ static void test_lines_stay_straight_within_truncation_and_end_exactly_without_a
     TEST_ASSERT_TRUE(lines.jump_mm < 1e-4);
 }
 
-/* Words with few bits, in which a cycle's acceleration or the feed itself is less than the last one: every line still ends. */
+/*
+ * Words with few bits, in which a cycle's acceleration or the feed itself is less than the last
+ * one: every line still ends.
+ */
 static void test_lines_in_short_words_end_too(void)
 {
     for (unsigned n = 0; n < 300; n++) {
@@ -324,7 +337,10 @@ static void test_a_word_of_m_bits_counts_the_whole_range(void)
     TEST_ASSERT_TRUE(takt_interpolator_unit_mm(1e-3, 1000, 16) == 32e-3);
 }
 
-/* The interpolators behind a planner's feed: an S-curve from rest to a feed and, one time in two, back to rest. */
+/*
+ * The interpolators behind a planner's feed: an S-curve from rest to a feed and, one time in two,
+ * back to rest.
+ */
 
 static double takt_s_curve(double part, bool stops)
 {

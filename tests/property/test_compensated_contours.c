@@ -1,10 +1,12 @@
 /*
- * Compensated paths verified by geometry. Random contours of lines and arcs run over hills and into valleys of every
- * width, short steps in inner corners among them; every point of the tool's path must be at the tool's radius from the
- * programmed path, nowhere nearer, and on its side. The verifier here shares no code with the room offset.
+ * Compensated paths verified by geometry. Random contours of lines and arcs run over hills and into
+ * valleys of every width, short steps in inner corners among them; every point of the tool's path
+ * must be at the tool's radius from the programmed path, nowhere nearer, and on its side. The
+ * verifier here shares no code with the room offset.
  *
- * A contour never turns back in its general direction, so there is a right answer for every tool: the path of a ball
- * rolling over it. What the tool cannot reach within the look-ahead may be refused, but not often.
+ * A contour never turns back in its general direction, so there is a right answer for every tool:
+ * the path of a ball rolling over it. What the tool cannot reach within the look-ahead may be
+ * refused, but not often.
  */
 #include "cutter_compensation/cutter_compensation.h"
 
@@ -272,7 +274,10 @@ static bool foot_of(const struct piece *p, const double q[2], double foot[2], do
     return inside;
 }
 
-/* Distance from everything programmed; *left: on which side of the nearest piece, if that is not a corner. */
+/*
+ * Distance from everything programmed; *left: on which side of the nearest piece, if that is not a
+ * corner.
+ */
 static double distance_from_wanted(const double q[2], double *left)
 {
     double smallest = 1e9;

@@ -1,7 +1,8 @@
 /*
- * Compensated involutes verified by geometry: random contours of a line, an involute and a line, the tool on either side.
- * Every point of the tool's path must be at the tool's radius from the programmed path and nowhere nearer. The nearest
- * point of the programmed involute is looked for along it, step by step: no formula of the room offset is used.
+ * Compensated involutes verified by geometry: random contours of a line, an involute and a line,
+ * the tool on either side. Every point of the tool's path must be at the tool's radius from the
+ * programmed path and nowhere nearer. The nearest point of the programmed involute is looked for
+ * along it, step by step: no formula of the room offset is used.
  */
 #include "cutter_compensation/cutter_compensation.h"
 
@@ -257,7 +258,10 @@ static void test_the_tool_stays_at_its_radius(void)
     TEST_ASSERT_TRUE(followed > CONTOURS / 2);
 }
 
-/* Inside, where the involute is sharper than the tool, there is no way: an arc is not left out either. */
+/*
+ * Inside, where the involute is sharper than the tool, there is no way: an arc is not left out
+ * either.
+ */
 static void test_a_tool_larger_than_the_radius_of_curvature_is_refused(void)
 {
     unsigned refused = 0;

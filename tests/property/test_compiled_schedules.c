@@ -1,10 +1,11 @@
 /*
- * Programs planned ahead, whatever the operator does: random programs on random machines are compiled, and replayed under
- * random schedules of overrides, holds and single block, the file as a stream that is now and then late. The setpoints keep every axis's limits by differences, are within
- * the tolerance of the programmed path, stop only on it, and end in the programmed end.
+ * Programs planned ahead, whatever the operator does: random programs on random machines are
+ * compiled, and replayed under random schedules of overrides, holds and single block, the file as a
+ * stream that is now and then late. The setpoints keep every axis's limits by differences, are
+ * within the tolerance of the programmed path, stop only on it, and end in the programmed end.
  *
- * test_compiled_schedules NUMBER runs this many programs instead of PROGRAMS, test_compiled_schedules NUMBER FIRST from
- * that seed on.
+ * test_compiled_schedules NUMBER runs this many programs instead of PROGRAMS,
+ * test_compiled_schedules NUMBER FIRST from that seed on.
  */
 #include "ahead/compile.h"
 #include "chain_distance.h"
@@ -49,8 +50,8 @@ struct run {
     struct point end;
     FILE *compiled;
     /* of one schedule */
-    bool
-        is_stream; /* the compiled program comes while it runs: bytes_a_cycle in each, from a cycle on */
+    /* the compiled program comes while it runs: bytes_a_cycle in each, from a cycle on */
+    bool is_stream;
     size_t came, taken;
     double bytes_a_cycle;
     uint64_t comes_from;
@@ -318,8 +319,8 @@ static enum motion_result run_schedule(struct run *r, bool is_stream)
 }
 
 /*
- * What takt compile asks of a program before it writes it, as it would run with nobody near. A path that turns back on
- * itself may not keep it.
+ * What takt compile asks of a program before it writes it, as it would run with nobody near. A path
+ * that turns back on itself may not keep it.
  */
 static bool is_written(struct run *r)
 {
@@ -352,7 +353,10 @@ static void check_run(const struct run *r, enum motion_result result, unsigned s
     TEST_ASSERT_TRUE_MESSAGE(chain_distance(&r->last, &r->end) == 0.0, message);
 }
 
-/* What the compiler finds no motion for, or its verifier refuses, it says so: that is no matter of the replay. */
+/*
+ * What the compiler finds no motion for, or its verifier refuses, it says so: that is no matter of
+ * the replay.
+ */
 static void test_limits_and_path_are_kept_under_any_schedule(void)
 {
     unsigned compiled = 0;

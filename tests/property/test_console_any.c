@@ -1,6 +1,6 @@
 /*
- * Any bytes for the console: nothing breaks, and every line gets exactly one answer. Without resets, which drop lines; with
- * them, the console still answers afterwards.
+ * Any bytes for the console: nothing breaks, and every line gets exactly one answer. Without
+ * resets, which drop lines; with them, the console still answers afterwards.
  */
 #include "console_bench.h"
 #include "property_arguments.h"
@@ -64,7 +64,10 @@ static void give_piece(void)
     }
 }
 
-/* The longest way there is at the lowest feed of the pieces, F2 in inches at 10 %, takes hours; most take a second. */
+/*
+ * The longest way there is at the lowest feed of the pieces, F2 in inches at 10 %, takes hours;
+ * most take a second.
+ */
 #define PATIENCE_CYCLES 60000U
 
 /* A hold may have been among the bytes: it is ended, as long as anything waits. */

@@ -1,7 +1,7 @@
 /*
- * Junctions close together: a search for the worst chain of short blocks, lines and arcs, with turns between them of any
- * size. Each chain is changed a little again and again, and a change is kept if the jerk comes nearer to its limit;
- * whatever the search finds, setpoints keep the limits.
+ * Junctions close together: a search for the worst chain of short blocks, lines and arcs, with
+ * turns between them of any size. Each chain is changed a little again and again, and a change is
+ * kept if the jerk comes nearer to its limit; whatever the search finds, setpoints keep the limits.
  *
  * test_crowded_junctions NUMBER [FIRST] searches from this many chains, from a seed on.
  */

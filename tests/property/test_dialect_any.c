@@ -1,6 +1,7 @@
 /*
- * host/dialect: any bytes become a text, in every dialect: each of their lines gives at least one, numbers of lines stay, and what
- * is read as LinuxCNC's without codes of the machine file is not changed.
+ * host/dialect: any bytes become a text, in every dialect: each of their lines gives at least one,
+ * numbers of lines stay, and what is read as LinuxCNC's without codes of the machine file is not
+ * changed.
  */
 #include "dialect/dialect.h"
 

@@ -1,6 +1,7 @@
 /*
- * Whatever comes over the bus, the master keeps its promises: it ends in no state it cannot leave but "faulted", sends no
- * setpoint once drives brake, and tells the first fault. Nodes that answer properly are mixed with random frames.
+ * Whatever comes over the bus, the master keeps its promises: it ends in no state it cannot leave
+ * but "faulted", sends no setpoint once drives brake, and tells the first fault. Nodes that answer
+ * properly are mixed with random frames.
  */
 #include "canopen/cia402.h"
 #include "drive/drives.h"

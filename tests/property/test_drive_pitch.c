@@ -1,6 +1,6 @@
 /*
- * Random tables of a drive's error of pitch (firmware/servo/pitch.h), against a reference of its own: the spline's four
- * coefficients a piece, as one dense system of equations in long double.
+ * Random tables of a drive's error of pitch (firmware/servo/pitch.h), against a reference of its
+ * own: the spline's four coefficients a piece, as one dense system of equations in long double.
  *
  *     test_drive_pitch [NUMBER [FIRST]]
  */
@@ -36,7 +36,10 @@ static double any(void)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/* A table of any size and shape, both directions of counting; the steepest are steeper than is allowed. */
+/*
+ * A table of any size and shape, both directions of counting; the steepest are steeper than is
+ * allowed.
+ */
 static void make_any(struct pitch *pitch)
 {
     memset(pitch, 0, sizeof *pitch);
@@ -82,7 +85,10 @@ static void solve(unsigned n)
     }
 }
 
-/* Values at both ends; slope, bend, and beside the ends of the table the third derivative agree where pieces meet. */
+/*
+ * Values at both ends; slope, bend, and beside the ends of the table the third derivative agree
+ * where pieces meet.
+ */
 static void make_reference(const struct pitch *pitch)
 {
     const unsigned pieces = pitch->points - 1, n = 4 * pieces;

@@ -1,9 +1,10 @@
 /*
- * Feed holds on smoothed and exact paths, from any moment: on machines drawn by their dimensionless numbers the axes come to
- * rest within a time that their limits tell, and go on afterwards, and no limit is broken.
+ * Feed holds on smoothed and exact paths, from any moment: on machines drawn by their dimensionless
+ * numbers the axes come to rest within a time that their limits tell, and go on afterwards, and no
+ * limit is broken.
  *
- * test_holds NUMBER runs this many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints
- * how long the holds took, in parts of V/A + A/J.
+ * test_holds NUMBER runs this many programs instead of PROGRAMS, test_holds NUMBER FIRST from that
+ * seed on. It prints how long the holds took, in parts of V/A + A/J.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -22,14 +23,17 @@
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 2000000
 
-/* Cycles looked at of a program at a feed far below what the axes can do, and the rounding of setpoints. */
+/*
+ * Cycles looked at of a program at a feed far below what the axes can do, and the rounding of
+ * setpoints.
+ */
 #define SLOW_CYCLES 20000
 #define ROUNDING_MM 1e-10
 
 /*
- * A hold takes up to HOLD_PARTS of V/A + A/J, and HOLD_CYCLES beside it; SLOW_OF_TEN_THOUSAND of ten thousand holds may take
- * more. Not counted are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of
- * them.
+ * A hold takes up to HOLD_PARTS of V/A + A/J, and HOLD_CYCLES beside it; SLOW_OF_TEN_THOUSAND of
+ * ten thousand holds may take more. Not counted are those of machines that stop in less than
+ * HOLD_CYCLES_MIN: what rounds to cycles is most of them.
  */
 #define HOLD_CYCLES_MIN      4.0
 #define HOLD_PARTS           1.5

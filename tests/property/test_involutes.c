@@ -1,7 +1,7 @@
 /*
- * Planner and motion on involutes: whatever the base circle, the ends and the feed, setpoints keep the axes' limits by
- * differences, through the start and the end on the base circle too; the end is hit; and wherever no limit binds, equal
- * cycles go equal lengths.
+ * Planner and motion on involutes: whatever the base circle, the ends and the feed, setpoints keep
+ * the axes' limits by differences, through the start and the end on the base circle too; the end is
+ * hit; and wherever no limit binds, equal cycles go equal lengths.
  *
  * test_involutes NUMBER runs this many seeds of each family and machine instead of SEEDS.
  */
@@ -137,7 +137,10 @@ static struct point start_of(const struct task *t)
     return at;
 }
 
-/* Calls each for every setpoint. Few blocks of look-ahead: an involute has more pieces than find room at once. */
+/*
+ * Calls each for every setpoint. Few blocks of look-ahead: an involute has more pieces than find
+ * room at once.
+ */
 static void run(const struct task *t, const struct plan_limits *limits, uint32_t look_ahead,
                 void (*each)(const struct task *t, const struct cycle_record *record))
 {
@@ -241,7 +244,10 @@ static void test_small_windows_keep_the_limits(void)
     check_limits(5);
 }
 
-/* Where on the involute a setpoint is, from its distance d from the centre alone: (d^2 - r^2) / (2 r) */
+/*
+ * Where on the involute a setpoint is, from its distance d from the centre alone: (d^2 - r^2) / (2
+ * r)
+ */
 static struct {
     double last_mm;
     bool cruised;
@@ -265,7 +271,10 @@ static void measure_step(const struct task *t, const struct cycle_record *record
     steps.last_mm = at_mm;
 }
 
-/* The hole of the page: r 0.63, 20 turns, out and in again. Distances are known to 1e-13 mm, lengths to 1e-11. */
+/*
+ * The hole of the page: r 0.63, 20 turns, out and in again. Distances are known to 1e-13 mm,
+ * lengths to 1e-11.
+ */
 static void test_equal_cycles_go_equal_lengths_where_no_limit_binds(void)
 {
     const double turns = 20.0 * MATHS_TWO_PI;

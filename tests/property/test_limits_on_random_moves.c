@@ -1,12 +1,14 @@
 /*
- * Planner and motion together, on random chains of moves: whatever the moves, the emitted setpoints keep every axis's
- * velocity, acceleration and jerk, by differences, and every landed end is hit.
+ * Planner and motion together, on random chains of moves: whatever the moves, the emitted setpoints
+ * keep every axis's velocity, acceleration and jerk, by differences, and every landed end is hit.
  *
- * Each chain is a fixed seed of a small generator; a failure names family, seed and cycle. The families are chosen for
- * what breaks planners: corners of any angle, nearly collinear blocks, blocks shorter than a cycle, zigzags, arcs into
- * arcs, helices, arcs whose two radii differ (random_chain.h).
+ * Each chain is a fixed seed of a small generator; a failure names family, seed and cycle. The
+ * families are chosen for what breaks planners: corners of any angle, nearly collinear blocks,
+ * blocks shorter than a cycle, zigzags, arcs into arcs, helices, arcs whose two radii differ
+ * (random_chain.h).
  *
- * test_limits_on_random_moves NUMBER runs this many seeds of each family and machine instead of SEEDS.
+ * test_limits_on_random_moves NUMBER runs this many seeds of each family and machine instead of
+ * SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"

@@ -1,6 +1,7 @@
 /*
- * takt correct on random programs of everything it writes, in all planes, units and coordinate systems: the corrected
- * program, read again by the interpreter, follows the corrected path of the program.
+ * takt correct on random programs of everything it writes, in all planes, units and coordinate
+ * systems: the corrected program, read again by the interpreter, follows the corrected path of the
+ * program.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -153,7 +154,10 @@ static double distance_at(const struct curve *c, const struct move *move, double
     return distance(&to, from);
 }
 
-/* Distance of a point from the corrected path, near the place *s and beyond it; *s becomes the nearest place. */
+/*
+ * Distance of a point from the corrected path, near the place *s and beyond it; *s becomes the
+ * nearest place.
+ */
 static double nearest(const struct curve *c, const struct move *move, double step,
                       const struct point *from, double *s)
 {

@@ -1,10 +1,12 @@
 /*
- * Whatever the operator does: random programs on random machines with every profile, under random schedules of feed
- * override, rapid override and hold. The setpoints keep every axis's limits by differences, landed ends are hit, the
- * program is completed, and nothing stops that neither the program nor the operator asked to.
+ * Whatever the operator does: random programs on random machines with every profile, under random
+ * schedules of feed override, rapid override and hold. The setpoints keep every axis's limits by
+ * differences, landed ends are hit, the program is completed, and nothing stops that neither the
+ * program nor the operator asked to.
  *
- * test_overrides NUMBER runs this many programs instead of PROGRAMS, test_overrides NUMBER FIRST from that seed on,
- * test_overrides NUMBER FIRST BLOCKS with this look-ahead instead of a random one.
+ * test_overrides NUMBER runs this many programs instead of PROGRAMS, test_overrides NUMBER FIRST
+ * from that seed on, test_overrides NUMBER FIRST BLOCKS with this look-ahead instead of a random
+ * one.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -25,7 +27,10 @@
 /* After this many cycles without hold everything that a hold has begun is over. */
 #define HOLD_IS_OVER_CYCLES 1200
 
-/* With fewer blocks the trapezoidal reference may come to the end of what is known, and waits there for more. */
+/*
+ * With fewer blocks the trapezoidal reference may come to the end of what is known, and waits there
+ * for more.
+ */
 #define LOOK_AHEAD_ENOUGH 8
 
 static struct path path;

@@ -1,6 +1,7 @@
 /*
- * The length of a program does not matter: nothing is kept of it but the current line, so a million lines take the
- * memory of a thousand. The text is made on the way, so that it does not take memory either.
+ * The length of a program does not matter: nothing is kept of it but the current line, so a million
+ * lines take the memory of a thousand. The text is made on the way, so that it does not take memory
+ * either.
  */
 #define _DEFAULT_SOURCE
 

@@ -1,9 +1,10 @@
 /*
- * Any bytes whatever are read to the end: every line gives moves or an error, every move is finite and inside the
- * travel, and nothing is read out of bounds (which the sanitizers watch).
+ * Any bytes whatever are read to the end: every line gives moves or an error, every move is finite
+ * and inside the travel, and nothing is read out of bounds (which the sanitizers watch).
  *
- * The bytes are real lines with random changes, so that they go deep before they go wrong. Together the lines have every
- * word of the language. Such a program may make moves for ever, or go round in loops for long: it is given up then.
+ * The bytes are real lines with random changes, so that they go deep before they go wrong. Together
+ * the lines have every word of the language. Such a program may make moves for ever, or go round in
+ * loops for long: it is given up then.
  */
 #include "base/maths.h"
 #include "program/program.h"

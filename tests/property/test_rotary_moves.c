@@ -1,8 +1,9 @@
 /*
- * Planner and motion together, on moves of linear and rotary axes in any proportion: from nothing of the one to nothing
- * of the other. Whatever the machine and the program, setpoints keep every axis's velocity, acceleration and jerk by
- * differences, every landed end is hit, and the program ends in the time that its feeds and the limits explain. So they do
- * whatever the operator does: overrides, holds, single block, stops and resets in any cycle.
+ * Planner and motion together, on moves of linear and rotary axes in any proportion: from nothing
+ * of the one to nothing of the other. Whatever the machine and the program, setpoints keep every
+ * axis's velocity, acceleration and jerk by differences, every landed end is hit, and the program
+ * ends in the time that its feeds and the limits explain. So they do whatever the operator does:
+ * overrides, holds, single block, stops and resets in any cycle.
  *
  *     test_rotary_moves NUMBER FIRST        NUMBER programs, from this seed on, of each test
  *
@@ -82,8 +83,8 @@ static bool chance(double part)
 /* -- machines -- */
 
 /*
- * Limits of one axis: velocity, the time in which it is reached at full acceleration, and that in which full
- * acceleration is reached. The latter is what a ramp profile's longest box allows, at most.
+ * Limits of one axis: velocity, the time in which it is reached at full acceleration, and that in
+ * which full acceleration is reached, at most what a ramp profile's longest box allows.
  */
 static void draw_axis(unsigned axis, double unit)
 {
@@ -208,8 +209,8 @@ static void draw_feed(struct move *m, const struct curve *c)
 }
 
 /*
- * Least time of a move by its feed. Braking goes in whole cycles: what the axes can brake from within a cycle may be come
- * to late, by a cycle2 / 8, and the last of a move is gone in one cycle.
+ * Least time of a move by its feed. Braking goes in whole cycles: what the axes can brake from
+ * within a cycle may be come to late, by a cycle2 / 8, and the last of a move is gone in one cycle.
  */
 static double least_time(const struct move *m, const struct curve *c)
 {
@@ -229,8 +230,8 @@ static double least_time(const struct move *m, const struct curve *c)
 }
 
 /*
- * Time of a move from rest to rest, L/v + v/a + a/j, a by the longest box, in the parts that arcs and junctions leave; twice the
- * ramps, and some windows of cycles, for feeds that are kept before they change.
+ * Time of a move from rest to rest, L/v + v/a + a/j, a by the longest box, in the parts that arcs
+ * and junctions leave; twice the ramps, and some windows of cycles, for feeds kept before a change.
  */
 static double most_time(const struct move *m, const struct curve *c)
 {

@@ -1,6 +1,7 @@
 /*
- * Planner, motion and shaping together, on random chains and random machines with random modes: setpoints that are sent keep
- * the axes' limits by differences, and where they come to rest nothing of any mode is left.
+ * Planner, motion and shaping together, on random chains and random machines with random modes:
+ * setpoints that are sent keep the axes' limits by differences, and where they come to rest nothing
+ * of any mode is left.
  *
  * test_shaped_moves NUMBER [FIRST] runs this many seeds from FIRST on instead of SEEDS.
  */
@@ -19,7 +20,10 @@
 #define MOVES      12
 #define CYCLES_MAX 2000000
 
-/* A swing of this part of what a whole step of the acceleration makes of the softest mode is rounding. */
+/*
+ * A swing of this part of what a whole step of the acceleration makes of the softest mode is
+ * rounding.
+ */
 #define NOTHING 1e-9
 
 static unsigned seeds = SEEDS;
@@ -66,8 +70,8 @@ static void random_modes(struct chain *c, struct task *t, double ramp_s)
 }
 
 /*
- * A machine by what has no dimension: cycles of a ramp of acceleration, such ramps in one to the highest feed, and periods of the
- * modes in a ramp, clamped to 10 ... 60 Hz.
+ * A machine by what has no dimension: cycles of a ramp of acceleration, such ramps in one to the
+ * highest feed, and periods of the modes in a ramp, clamped to 10 ... 60 Hz.
  */
 static struct task random_task(uint64_t task_seed)
 {
@@ -104,7 +108,9 @@ static void push_moves(struct chain *c, const struct task *t)
     takt_path_finish(&path);
 }
 
-/* What goes on swinging on the tool's side of an axis: (away, rate) of each mode by its amplitude. */
+/*
+ * What goes on swinging on the tool's side of an axis: (away, rate) of each mode by its amplitude.
+ */
 static double swing_of(const struct task *t, unsigned axis)
 {
     double sum = 0;
@@ -131,7 +137,10 @@ static void check_rest(const struct task *t, uint64_t seed)
     }
 }
 
-/* What is sent instead of the setpoint, verified and followed by the modes; also when the program is done. */
+/*
+ * What is sent instead of the setpoint, verified and followed by the modes; also when the program
+ * is done.
+ */
 static void send(const struct task *t, struct point at)
 {
     takt_shape_cycle(&shape, &at);

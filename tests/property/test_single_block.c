@@ -1,12 +1,13 @@
 /*
- * Single block, switched on and off at any cycle while the axes move, beside holds, stops, overrides, waits at block ends
- * and resets: random programs of short blocks on machines drawn by dimensionless numbers, on the exact path and smoothed.
- * The setpoints keep every axis's limits by differences and the order along the path, lie on it or within the tolerance,
- * landed ends are hit exactly, and the motion ends. Switched on for good, every motion ends at rest. Smoothed paths are
+ * Single block, switched on and off at any cycle while the axes move, beside holds, stops,
+ * overrides, waits at block ends and resets: random programs of short blocks on machines drawn by
+ * dimensionless numbers, on the exact path and smoothed. The setpoints keep every axis's limits by
+ * differences and the order along the path, lie on it or within the tolerance, landed ends are hit
+ * exactly, and the motion ends. Switched on for good, every motion ends at rest. Smoothed paths are
  * verified a second time by the walk of `hunt`: is there a monotone match within the tolerance?
  *
- * test_single_block NUMBER runs this many programs of each kind instead of PROGRAMS, test_single_block NUMBER FIRST
- * from that seed on.
+ * test_single_block NUMBER runs this many programs of each kind instead of PROGRAMS,
+ * test_single_block NUMBER FIRST from that seed on.
  */
 #include "chain_distance.h"
 #include "motion/motion.h"
@@ -36,7 +37,10 @@
 /* After this many cycles without hold or switch everything that they have begun is over. */
 #define OVER_CYCLES 1200
 
-/* With fewer blocks the trapezoidal reference may come to the end of what is known, and waits there for more. */
+/*
+ * With fewer blocks the trapezoidal reference may come to the end of what is known, and waits there
+ * for more.
+ */
 #define LOOK_AHEAD_ENOUGH 8
 
 static struct path path;
@@ -86,8 +90,8 @@ void tearDown(void)
 /* -- what is drawn -- */
 
 /*
- * By dimensionless numbers: a ramp of acceleration takes A/J = 0.5 ... 200 cycles, one of feed V/A = 5 ... 500, the axes
- * differ by 6 in each limit; velocities and cycles are those of machines.
+ * By dimensionless numbers: a ramp of acceleration takes A/J = 0.5 ... 200 cycles, one of feed V/A
+ * = 5 ... 500, the axes differ by 6 in each limit; velocities and cycles are those of machines.
  */
 static void random_machine(struct run *r)
 {
@@ -125,7 +129,10 @@ static void set_up_run(struct run *r, unsigned seed, bool smoothed)
     second_begin(CHAIN_AXES);
 }
 
-/* Mostly lines of 0.001 ... 1 mm, on a grid of 0.001 as programs have it, in any direction; feeds from slow to fast. */
+/*
+ * Mostly lines of 0.001 ... 1 mm, on a grid of 0.001 as programs have it, in any direction; feeds
+ * from slow to fast.
+ */
 static struct move short_line(struct chain *c)
 {
     struct move m;
@@ -274,7 +281,10 @@ static void verify_landing(struct run *r, const struct cycle_record *record)
     }
 }
 
-/* The axes have just come to rest where no block ends, and nothing has been held or switched for long. */
+/*
+ * The axes have just come to rest where no block ends, and nothing has been held or switched for
+ * long.
+ */
 static void verify_rest(struct run *r, const struct cycle_record *record)
 {
     const bool rests = motion.reference.feed == 0.0 && motion.lag == 0.0;
@@ -422,10 +432,15 @@ static void test_rare_programs_keep_the_limits(void)
     first_seed = 50064;
     programs = 5;
     test_left_on_every_motion_ends_at_rest();
-    /* switched off before a junction of less acceleration, too late to land on it or to rest there */
+    /*
+     * switched off before a junction of less acceleration, too late to land on it or to rest there
+     */
     TEST_ASSERT_TRUE(check_program(372, false, SINGLE_SWITCHED));
     TEST_ASSERT_TRUE(check_program(2044, false, SINGLE_SWITCHED));
-    /* an end was kept that a junction in view bound it to, and was braked for after it was switched off */
+    /*
+     * an end was kept that a junction in view bound it to, and was braked for after it was switched
+     * off
+     */
     TEST_ASSERT_TRUE(check_program(1622, false, SINGLE_SWITCHED));
     /* in the last cycle before rest a hold found that the axes had turned back */
     TEST_ASSERT_TRUE(check_program(5113, true, SINGLE_SWITCHED));

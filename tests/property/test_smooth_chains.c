@@ -1,11 +1,12 @@
 /*
- * Smoothed paths (G64 P), whatever the operator does: random programs on random machines under random schedules of
- * overrides and holds. The setpoints keep every axis's limits by differences, are within the tolerance of the programmed
- * path, pass every programmed corner within it, and end in the programmed end. So they do with rotary axes, up to six in
- * all, and beside motions on the exact path whose every end is landed on.
+ * Smoothed paths (G64 P), whatever the operator does: random programs on random machines under
+ * random schedules of overrides and holds. The setpoints keep every axis's limits by differences,
+ * are within the tolerance of the programmed path, pass every programmed corner within it, and end
+ * in the programmed end. So they do with rotary axes, up to six in all, and beside motions on the
+ * exact path whose every end is landed on.
  *
- * test_smooth_chains NUMBER runs this many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed
- * on.
+ * test_smooth_chains NUMBER runs this many programs instead of PROGRAMS, test_smooth_chains NUMBER
+ * FIRST from that seed on.
  */
 #include "chain_distance.h"
 #include "motion/motion.h"

@@ -1,6 +1,7 @@
 /*
- * Planner and motion on splines: whatever the order, the control points and weights, the size and the feed, setpoints keep
- * the axes' limits by differences, the end is hit, and where no limit binds the feed is even.
+ * Planner and motion on splines: whatever the order, the control points and weights, the size and
+ * the feed, setpoints keep the axes' limits by differences, the end is hit, and where no limit
+ * binds the feed is even.
  *
  * test_splines NUMBER runs this many seeds on each machine instead of SEEDS.
  */
@@ -47,7 +48,10 @@ void tearDown(void)
 {
 }
 
-/* Limits that differ by decades, from axis to axis and from machine to machine, dimensions of the curve beside them. */
+/*
+ * Limits that differ by decades, from axis to axis and from machine to machine, dimensions of the
+ * curve beside them.
+ */
 static struct task random_task(uint64_t task_seed)
 {
     struct chain c = {.seed = task_seed};
@@ -216,7 +220,10 @@ static void test_smoothed_splines_keep_the_limits(void)
     check_limits(256, false, 0.02);
 }
 
-/* A curve so gentle that no limit binds: in between the ramps, every step is feed times cycle, over every junction. */
+/*
+ * A curve so gentle that no limit binds: in between the ramps, every step is feed times cycle, over
+ * every junction.
+ */
 static void test_the_feed_is_even_from_piece_to_piece(void)
 {
     struct task t = {.limits = {.axes = 7, .cycle_s = CYCLE_S, .chord_error_max_mm = 1.0},

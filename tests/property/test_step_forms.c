@@ -1,7 +1,8 @@
 /*
- * The interpolators of unit steps on random lines, arcs and helices: at every tick no axis is off by more than a step
- * (an arc not by more than a step radially), the end is exact, and the improved form takes no more ticks than the
- * leading axis has steps. Every shape is a fixed seed; a failure names it.
+ * The interpolators of unit steps on random lines, arcs and helices: at every tick no axis is off
+ * by more than a step (an arc not by more than a step radially), the end is exact, and the improved
+ * form takes no more ticks than the leading axis has steps. Every shape is a fixed seed; a failure
+ * names it.
  *
  * test_step_forms NUMBER tries this many of each shape instead of SHAPES.
  */
@@ -87,7 +88,10 @@ static unsigned moving_axes(const int64_t delta[AXIS_COUNT])
     return count;
 }
 
-/* Distance along each axis from where the line is when its leading coordinate is the lattice point's. */
+/*
+ * Distance along each axis from where the line is when its leading coordinate is the lattice
+ * point's.
+ */
 static void check_on_line(const int64_t at[AXIS_COUNT], const int64_t delta[AXIS_COUNT],
                           unsigned leading)
 {
@@ -210,7 +214,10 @@ static void check_on_circle(const int64_t at[2], double radius)
     TEST_ASSERT_TRUE_MESSAGE(maths_abs(off) <= 1.0 + ROOM, shape);
 }
 
-/* Steps of the coordinate that leads, from the beginning of the first octant to an angle: R sin in odd, R (1 - cos) ... */
+/*
+ * Steps of the coordinate that leads, from the beginning of the first octant to an angle: R sin in
+ * odd, R (1 - cos) ...
+ */
 static double leading_way(double angle_rad)
 {
     double eighths = takt_maths_floor(angle_rad / (0.25 * MATHS_PI));
@@ -221,7 +228,10 @@ static double leading_way(double angle_rad)
            (odd ? maths_sqrt(0.5) - takt_maths_sin(0.25 * MATHS_PI - rest) : takt_maths_sin(rest));
 }
 
-/* Ticks beyond what the leading coordinate of the true arc moves; a rounded junction between octants may cost one. */
+/*
+ * Ticks beyond what the leading coordinate of the true arc moves; a rounded junction between
+ * octants may cost one.
+ */
 static void check_ticks(const struct arc_case *c, int64_t ticks)
 {
     double start = c->start_rad * (c->config.clockwise ? -1.0 : 1.0) + MATHS_TWO_PI;
@@ -278,7 +288,10 @@ static double turned(const struct arc_case *c, const int64_t at[AXIS_COUNT],
     return angle + MATHS_TWO_PI * takt_maths_round((expected - angle) / MATHS_TWO_PI);
 }
 
-/* Largest deviation of all coordinates from the helix at the place given; the arc's along it, and straight axes. */
+/*
+ * Largest deviation of all coordinates from the helix at the place given; the arc's along it, and
+ * straight axes.
+ */
 static double off_at(const struct arc_case *c, const int64_t at[AXIS_COUNT],
                      const unsigned plane[2], const int64_t delta[AXIS_COUNT], double part)
 {
@@ -292,7 +305,10 @@ static double off_at(const struct arc_case *c, const int64_t at[AXIS_COUNT],
     return off;
 }
 
-/* The place with the least deviation: the largest of functions that rise on both sides of their zero has one lowest. */
+/*
+ * The place with the least deviation: the largest of functions that rise on both sides of their
+ * zero has one lowest.
+ */
 static double lowest_off(const struct arc_case *c, const int64_t at[AXIS_COUNT],
                          const unsigned plane[2], const int64_t delta[AXIS_COUNT], double part)
 {
@@ -310,7 +326,10 @@ static double lowest_off(const struct arc_case *c, const int64_t at[AXIS_COUNT],
     return off_at(c, at, plane, delta, low);
 }
 
-/* There is a place on the helix from which no coordinate is off by more than a step. The arc's own angle often is one. */
+/*
+ * There is a place on the helix from which no coordinate is off by more than a step. The arc's own
+ * angle often is one.
+ */
 static void check_on_helix(const struct arc_case *c, const int64_t at[AXIS_COUNT],
                            const unsigned plane[2], const int64_t delta[AXIS_COUNT], double *part)
 {

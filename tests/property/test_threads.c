@@ -1,11 +1,13 @@
 /*
- * Random threads and taps on random machines: pitch, speed, axis limits, control cycle, encoder, the spindle's ramp,
- * inertia, torque ripple and noise. Whatever happens the setpoints keep every axis's limits by differences, and what is not
- * ended by an alarm ends where it should. With jerk and acceleration to spare the axes are off the thread by no more than
+ * Random threads and taps on random machines: pitch, speed, axis limits, control cycle, encoder,
+ * the spindle's ramp, inertia, torque ripple and noise. Whatever happens the setpoints keep every
+ * axis's limits by differences, and what is not ended by an alarm ends where it should. With jerk
+ * and acceleration to spare the axes are off the thread by no more than
  *
  *     pitch (BOUND alpha / w^2 + COUNTS / counts)      alpha the spindle's largest angular acceleration, w the bandwidth
  *
- * once they have caught up; all passes, whatever their speeds, begin at a whole revolution; a tap comes back to its start exactly.
+ * once they have caught up; all passes, whatever their speeds, begin at a whole revolution; a tap
+ * comes back to its start exactly.
  *
  * test_threads NUMBER runs this many machines, test_threads NUMBER FIRST from that seed on.
  */
@@ -23,8 +25,9 @@
 #define COUNTS 3.0
 
 /*
- * Parts of jerk and acceleration that following may need for the bound to hold. A step of the spindle's acceleration comes
- * out of the angle's filter, and of the follower, higher by a fifth each: 1.2^2 0.69 = 1.
+ * Parts of jerk and acceleration that following may need for the bound to hold. A step of the
+ * spindle's acceleration comes out of the angle's filter, and of the follower, higher by a fifth
+ * each: 1.2^2 0.69 = 1.
  */
 #define JERK_PART         0.3
 #define ACCELERATION_PART 0.69

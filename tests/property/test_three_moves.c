@@ -1,10 +1,11 @@
 /*
- * The planner's times against the least ones there are: single moves against the closed form, chains of three moves
- * against a slow search (support/optimum.h).
+ * The planner's times against the least ones there are: single moves against the closed form,
+ * chains of three moves against a slow search (support/optimum.h).
  *
- * test_three_moves NUMBER [FIRST [SHORTEST]] tries this many chains from a seed on, of moves from SHORTEST mm to 100
- * mm, tells each that takes too long, and how near the planner comes. The planner is known not to keep this for moves
- * shorter than SHORTEST_MM: test_three_moves 400 1000 0.01.
+ * test_three_moves NUMBER [FIRST [SHORTEST]] tries this many chains from a seed on, of moves from
+ * SHORTEST mm to 100 mm, tells each that takes too long, and how near the planner comes. The
+ * planner is known not to keep this for moves shorter than SHORTEST_MM: test_three_moves 400 1000
+ * 0.01.
  */
 #include "motion/motion.h"
 #include "plan/path.h"

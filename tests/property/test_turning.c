@@ -1,6 +1,7 @@
 /*
- * The turning cycles on random profiles of lines and arcs: wherever a cycle goes, at feed or at rapid, it stays at least its
- * distance above the profile, and finishing keeps exactly that distance. Roughing cuts no deeper than a level at once.
+ * The turning cycles on random profiles of lines and arcs: wherever a cycle goes, at feed or at
+ * rapid, it stays at least its distance above the profile, and finishing keeps exactly that
+ * distance. Roughing cuts no deeper than a level at once.
  *
  * test_turning NUMBER FIRST: this many profiles, the first of this seed.
  */
@@ -21,8 +22,8 @@
 /* Levels meet the profile within 1e-6 mm, which a shallow slope makes more. */
 #define NEAR_MM 1e-5
 /*
- * Centres with four decimals lie aside by half of the last, along each axis; radii that differ by it mean 1.5 of it at
- * most.
+ * Centres with four decimals lie aside by half of the last, along each axis; radii that differ by
+ * it mean 1.5 of it at most.
  */
 #define DECIMALS_MM 1e-4
 #define ROUNDED_MM  (2.0 * DECIMALS_MM)
@@ -40,7 +41,10 @@ void tearDown(void)
 
 /* -- profiles -- */
 
-/* An arc over the chord that neither turns back in u nor bulges past its centre. False: there is none of this radius. */
+/*
+ * An arc over the chord that neither turns back in u nor bulges past its centre. False: there is
+ * none of this radius.
+ */
 static bool make_arc(struct profile_segment *s, double radius_ratio, bool left)
 {
     const double u = s->end.u - s->start.u;
@@ -108,7 +112,10 @@ static double distance_to_line(const struct profile_point *q, const struct profi
     return hypotenuse(q->u - s->start.u - t * u, q->v - s->start.v - t * v);
 }
 
-/* Arcs of profiles are above their centre if they turn left, below if right, and from start.u down to end.u. */
+/*
+ * Arcs of profiles are above their centre if they turn left, below if right, and from start.u down
+ * to end.u.
+ */
 static double distance_to_arc(const struct profile_point *q, const struct profile_segment *s)
 {
     const double r = distance_to_end(&s->start, &s->centre);
@@ -268,7 +275,9 @@ static void test_arcs_with_four_decimals_are_followed_as_well(void)
     }
 }
 
-/* Two quarters that meet where both are upright, with radii that differ by 0.0001 mm at their ends. */
+/*
+ * Two quarters that meet where both are upright, with radii that differ by 0.0001 mm at their ends.
+ */
 static void test_roughing_goes_on_where_two_arcs_meet_upright(void)
 {
     const struct profile p = {.count = 6,
@@ -300,8 +309,9 @@ static void test_roughing_goes_on_where_two_arcs_meet_upright(void)
 }
 
 /*
- * What such profiles have: a last wall that dips below the way to the profile, a corner between two corners that is hardly
- * there, an arc that the distance swallows but for 0.5 um, an arc left over behind a level, a wall of 1 um.
+ * What such profiles have: a last wall that dips below the way to the profile, a corner between two
+ * corners that is hardly there, an arc that the distance swallows but for 0.5 um, an arc left over
+ * behind a level, a wall of 1 um.
  */
 static void test_profiles_with_little_room_keep_the_distance_too(void)
 {

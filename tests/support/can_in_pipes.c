@@ -1,10 +1,12 @@
 /*
- * Preloaded into programs that use SocketCAN: CAN interfaces made of pipes, for programs that cannot run where a real
- * one is. tests/with_can --sanitized makes the folder TAKT_CAN: in it a folder for each interface, in that a named
- * pipe for each socket bound to it, and a file "down" while the interface is down.
+ * Preloaded into programs that use SocketCAN: CAN interfaces made of pipes, for programs that
+ * cannot run where a real one is. tests/with_can --sanitized makes the folder TAKT_CAN: in it a
+ * folder for each interface, in that a named pipe for each socket bound to it, and a file "down"
+ * while the interface is down.
  *
- * A frame goes into the pipes of all other sockets; the reader filters, as the kernel does for it. A pipe that is full
- * loses frames, as a socket does. Raw sockets only, and of them what host/bus/link_socketcan.c uses.
+ * A frame goes into the pipes of all other sockets; the reader filters, as the kernel does for it.
+ * A pipe that is full loses frames, as a socket does. Raw sockets only, and of them what
+ * host/bus/link_socketcan.c uses.
  */
 #define _GNU_SOURCE
 

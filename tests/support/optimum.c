@@ -9,7 +9,10 @@
 
 /* -- one move -- */
 
-/* T = F/a + a/j for a ramp of F, 2 sqrt(F/j) where full acceleration is not reached; it covers F T / 2. */
+/*
+ * T = F/a + a/j for a ramp of F, 2 sqrt(F/j) where full acceleration is not reached; it covers F T
+ * / 2.
+ */
 static double ramp_time(const struct optimum_move *m, double feed)
 {
     const double a = m->acceleration;
@@ -71,8 +74,9 @@ static void push(struct at *p, const struct optimum_move *m, double sign, double
 }
 
 /*
- * The fastest change to another state, whatever its way: jerk of one sign, acceleration kept if it is at its limit, jerk
- * of the other sign. With peak acceleration p: p^2 = s j dv + (a0^2 + a1^2) / 2, s the first sign.
+ * The fastest change to another state, whatever its way: jerk of one sign, acceleration kept if it
+ * is at its limit, jerk of the other sign. With peak acceleration p: p^2 = s j dv + (a0^2 + a1^2) /
+ * 2, s the first sign.
  */
 static void change(struct at *p, const struct optimum_move *m, const struct optimum_state *to)
 {
@@ -136,9 +140,9 @@ static struct at pushed_and_changed(const struct optimum_move *m, const struct o
 }
 
 /*
- * Jerk changes its sign twice at most: it is +, -, + where the way is longer than that of the fastest change of state,
- * -, +, - where it is shorter. The longer the first phase, the longer (shorter) the way. What is left of it at the
- * longest one is gone at the highest feed.
+ * Jerk changes its sign twice at most: it is +, -, + where the way is longer than that of the
+ * fastest change of state, -, +, - where it is shorter. The longer the first phase, the longer
+ * (shorter) the way. What is left of it at the longest one is gone at the highest feed.
  */
 static double between(const struct optimum_move *m, const struct optimum_state *from,
                       const struct optimum_state *to)

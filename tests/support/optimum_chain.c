@@ -1,7 +1,8 @@
 /*
- * The search for the fastest chain: differential evolution (a population of candidates that recombines and keeps what is
- * better) over both junctions. The best is often at the edge of what can be done at all, so the state at a junction is not only
- * given as such, but also by the phases that lead to it, from the start, from the other junction, or from the end backwards.
+ * The search for the fastest chain: differential evolution (a population of candidates that
+ * recombines and keeps what is better) over both junctions. The best is often at the edge of what
+ * can be done at all, so the state at a junction is not only given as such, but also by the phases
+ * that lead to it, from the start, from the other junction, or from the end backwards.
  */
 #include "optimum.h"
 
@@ -35,7 +36,10 @@ struct search {
 
 static const struct optimum_state rest = {0.0, 0.0};
 
-/* The highest feed to which a way from rest leads: by full acceleration, and by full jerk, v^3 = 9/2 j s^2. */
+/*
+ * The highest feed to which a way from rest leads: by full acceleration, and by full jerk, v^3 =
+ * 9/2 j s^2.
+ */
 static double feed_after(const struct optimum_move *m)
 {
     const double way = m->length;
@@ -43,7 +47,10 @@ static double feed_after(const struct optimum_move *m)
     return fmin(sqrt(2.0 * m->acceleration * way), cbrt(4.5 * m->jerk * way * way));
 }
 
-/* A state at the junction between two moves: a part of the highest feed, and of the acceleration that leaves both limits. */
+/*
+ * A state at the junction between two moves: a part of the highest feed, and of the acceleration
+ * that leaves both limits.
+ */
 static struct optimum_state state_given(const struct optimum_move *before, double feed_max,
                                         const double x[2])
 {
@@ -69,7 +76,10 @@ static double time_scale(const struct optimum_move *m, double feed)
     return fmin(m->length / fmax(feed, 1e-6), from_rest);
 }
 
-/* Passes a move by two parameters: the first one's sign and duration, and the second one's duration. */
+/*
+ * Passes a move by two parameters: the first one's sign and duration, and the second one's
+ * duration.
+ */
 static double pass(const struct optimum_move *m, struct optimum_state *state, bool from_rest,
                    const double x[2])
 {
@@ -204,7 +214,10 @@ static double search(const struct family *f)
     return best_of(&s)->time;
 }
 
-/* A short move may be left while speed changes: it never gets where it would level off. v + a^2/2j is the most. */
+/*
+ * A short move may be left while speed changes: it never gets where it would level off. v + a^2/2j
+ * is the most.
+ */
 static void level_beyond(struct optimum_move chain[OPTIMUM_MOVES])
 {
     for (int i = 0; i < OPTIMUM_MOVES; i++) {

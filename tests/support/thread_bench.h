@@ -1,6 +1,7 @@
 /*
- * Path, motion, lock and the virtual spindle together, without drives: for tests of threads. What is thought to happen
- * on a machine is verified here: the axes are at a setpoint BENCH_AHEAD cycles after its cycle.
+ * Path, motion, lock and the virtual spindle together, without drives: for tests of threads. What
+ * is thought to happen on a machine is verified here: the axes are at a setpoint BENCH_AHEAD cycles
+ * after its cycle.
  */
 #ifndef TAKT_TESTS_THREAD_BENCH_H
 #define TAKT_TESTS_THREAD_BENCH_H
@@ -60,8 +61,8 @@ bool bench_cycle(struct bench *b);
 void bench_check_limits(const struct bench *b);
 
 /*
- * How far the axes are off the thread now, mm: the setpoint of BENCH_AHEAD cycles ago against the true angle.
- * Meaningful in a thread of one block, BENCH_AHEAD cycles after its start.
+ * How far the axes are off the thread now, mm: the setpoint of BENCH_AHEAD cycles ago against the
+ * true angle. Meaningful in a thread of one block, BENCH_AHEAD cycles after its start.
  */
 double bench_off_mm(const struct bench *b);
 

@@ -1,8 +1,9 @@
 /*
  * Writes a report of a made-up run: report_sample CYCLES OUTPUT.html
  *
- * Four axes cut a rising spiral: rapid out, plunge, spiral, retract, rapid home, over and over until CYCLES are
- * made, with drives that lag. A run of few cycles is kept whole, so the number of points in every plot is known.
+ * Four axes cut a rising spiral: rapid out, plunge, spiral, retract, rapid home, over and over
+ * until CYCLES are made, with drives that lag. A run of few cycles is kept whole, so the number of
+ * points in every plot is known.
  */
 #include "base/maths.h"
 #include "report/report.h"

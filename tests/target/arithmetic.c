@@ -1,6 +1,7 @@
 /*
- * An image that computes with what stands under every image (hal/port): it reads pairs of doubles from one file and
- * writes what it makes of them to another. target_arithmetic.py has the pairs, and knows the answers.
+ * An image that computes with what stands under every image (hal/port): it reads pairs of doubles
+ * from one file and writes what it makes of them to another. target_arithmetic.py has the pairs,
+ * and knows the answers.
  */
 #include "semihosting/semihosting.h"
 

@@ -1,11 +1,13 @@
 /*
- * An image that keeps settings in flash, which QEMU keeps in a file, and may be stopped at any moment. Its words:
+ * An image that keeps settings in flash, which QEMU keeps in a file, and may be stopped at any
+ * moment. Its words:
  *
  *     FLASH FOUND [NEW TICKS]
  *
- * It writes the settings that count to FOUND, nothing if there are none that can be used. Then it stores NEW, as the panel
- * does, and stops for good after TICKS ticks of its clock, 40 instructions each; 0: when it is done. The exit status is
- * 0 when it came to its end, STOPPED when the clock was first, and something else when it failed.
+ * It writes the settings that count to FOUND, nothing if there are none that can be used. Then it
+ * stores NEW, as the panel does, and stops for good after TICKS ticks of its clock, 40 instructions
+ * each; 0: when it is done. The exit status is 0 when it came to its end, STOPPED when the clock
+ * was first, and something else when it failed.
  */
 #include "mps2/file_flash.h"
 #include "port/cortex_m.h"

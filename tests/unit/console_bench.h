@@ -1,6 +1,6 @@
 /*
- * What the tests of the console share: a console as a client of the panel of a service on three virtual drives, in virtual
- * time.
+ * What the tests of the console share: a console as a client of the panel of a service on three
+ * virtual drives, in virtual time.
  */
 #ifndef TAKT_TESTS_CONSOLE_BENCH_H
 #define TAKT_TESTS_CONSOLE_BENCH_H

@@ -1,5 +1,6 @@
 /*
- * The main part of every image, on three virtual drives in virtual time: requests of Modbus RTU in, replies out.
+ * The main part of every image, on three virtual drives in virtual time: requests of Modbus RTU in,
+ * replies out.
  */
 #ifndef TAKT_TESTS_EMBEDDED_BENCH_H
 #define TAKT_TESTS_EMBEDDED_BENCH_H

@@ -1,6 +1,6 @@
 /*
- * Nodes that answer a master under test as CiA 301 wants: boot-up after a reset, SDO responses. What they answer can
- * be set; what they are told is kept. They send nothing else by themselves.
+ * Nodes that answer a master under test as CiA 301 wants: boot-up after a reset, SDO responses.
+ * What they answer can be set; what they are told is kept. They send nothing else by themselves.
  */
 #ifndef TAKT_TESTS_FAKE_NODES_H
 #define TAKT_TESTS_FAKE_NODES_H

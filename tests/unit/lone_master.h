@@ -1,7 +1,7 @@
 /*
- * A master in operation, against a port under the test's control: what it sends is kept, what it receives is put in by
- * hand, but for the start, which fake nodes answer. Shared by test_drive_master.c, test_drive_faults.c and
- * test_drive_stopping.c.
+ * A master in operation, against a port under the test's control: what it sends is kept, what it
+ * receives is put in by hand, but for the start, which fake nodes answer. Shared by
+ * test_drive_master.c, test_drive_faults.c and test_drive_stopping.c.
  */
 #ifndef TAKT_TESTS_LONE_MASTER_H
 #define TAKT_TESTS_LONE_MASTER_H

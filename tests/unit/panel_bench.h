@@ -1,4 +1,7 @@
-/* A panel with two clients, before a controller and a store of programs that note what they are asked. */
+/*
+ * A panel with two clients, before a controller and a store of programs that note what they are
+ * asked.
+ */
 #ifndef TAKT_TESTS_PANEL_BENCH_H
 #define TAKT_TESTS_PANEL_BENCH_H
 

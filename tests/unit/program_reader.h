@@ -1,6 +1,7 @@
 /*
- * For tests of the program room: a program from a string, on a machine with axes X Y Z A, travel -500 ... 500 mm
- * and -360 ... 360 degrees, at 0, with spindle up to 24,000 rev/min, two tools, and parameters all 0.
+ * For tests of the program room: a program from a string, on a machine with axes X Y Z A, travel
+ * -500 ... 500 mm and -360 ... 360 degrees, at 0, with spindle up to 24,000 rev/min, two tools, and
+ * parameters all 0.
  */
 #ifndef TAKT_TESTS_PROGRAM_READER_H
 #define TAKT_TESTS_PROGRAM_READER_H
@@ -61,7 +62,9 @@ static inline void reader_open(struct reader *r, const char *text)
     reader_text(r, text);
 }
 
-/* What has been read must be a move of this kind; if it is an error, the test fails with its text. */
+/*
+ * What has been read must be a move of this kind; if it is an error, the test fails with its text.
+ */
 static inline void reader_check(const struct reader *r, enum program_result result,
                                 enum move_kind kind, const struct move *move)
 {

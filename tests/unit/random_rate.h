@@ -1,5 +1,6 @@
 /*
- * Random machines for the rate of compiled programs, and what a change of the rate needs of their axes.
+ * Random machines for the rate of compiled programs, and what a change of the rate needs of their
+ * axes.
  */
 #ifndef TAKT_TESTS_RANDOM_RATE_H
 #define TAKT_TESTS_RANDOM_RATE_H
@@ -40,8 +41,9 @@ static inline struct plan_limits random_rate_machine(void)
 }
 
 /*
- * Need of one axis, at a place of the curve that needs all it may, in a cycle between two states of the rate:
- * acceleration and jerk over the limits (rate.h), with the larger of what the rate was and is.
+ * Need of one axis, at a place of the curve that needs all it may, in a cycle between two states of
+ * the rate: acceleration and jerk over the limits (rate.h), with the larger of what the rate was
+ * and is.
  */
 static inline double random_rate_need(const struct plan_limits *l, int axis,
                                       const struct rate *before, const struct rate *now)

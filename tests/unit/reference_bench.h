@@ -1,10 +1,11 @@
 /*
  * The trapezoidal reference alone, under ceilings made by hand: no path, no blocks.
- * 
- * A ceiling is laid of stretches, each for the setpoint from one place to the next, as spans.md says: it begins for the
- * trapezoidal reference feed (N - 1)/2 and two cycles earlier, never before the one before it; a lower acceleration so much earlier by
- * the highest feed, whatever the override. Accelerations do not rise from one stretch to the next, so no stretch left behind
- * asks for less.
+ *
+ * A ceiling is laid of stretches, each for the setpoint from one place to the next, as spans.md
+ * says: it begins for the trapezoidal reference feed (N - 1)/2 and two cycles earlier, never before
+ * the one before it; a lower acceleration so much earlier by the highest feed, whatever the
+ * override. Accelerations do not rise from one stretch to the next, so no stretch left behind asks
+ * for less.
  */
 #ifndef TAKT_TESTS_REFERENCE_BENCH_H
 #define TAKT_TESTS_REFERENCE_BENCH_H
@@ -22,12 +23,17 @@
 #define WINDOW 20
 #define BEHIND (0.5 * (WINDOW - 1.0) + CEILING_MARGIN_CYCLES)
 
-/* s, mm/cycle, mm/cycle2: 100 mm/s and 1 m/s2 as ceilings keep it: of single precision, and not above. */
+/*
+ * s, mm/cycle, mm/cycle2: 100 mm/s and 1 m/s2 as ceilings keep it: of single precision, and not
+ * above.
+ */
 #define CYCLE_S 1e-3
 #define FEED    0.1
 #define A       0x1.0624dcp-10
 
-/* The last change of feed to rest may be more than a by this part; positions are rounded to units. */
+/*
+ * The last change of feed to rest may be more than a by this part; positions are rounded to units.
+ */
 #define CHANGE_PART 3e-4
 
 struct stretch {
@@ -142,7 +148,9 @@ static inline void plan(struct ceiling *c)
     }
 }
 
-/* The stretches up to a stop at the end of the last, or without stops to the end of what is known. */
+/*
+ * The stretches up to a stop at the end of the last, or without stops to the end of what is known.
+ */
 static inline void lay(struct ceiling *c, const struct stretch *s, unsigned count, double ratio,
                        bool stops)
 {
@@ -223,7 +231,10 @@ static inline void run_to_stop(double a_max, unsigned cycles_max)
 
 static const struct stretch dip[] = {{20.0, FEED, A}, {5.0, 0.3 * FEED, A}, {20.0, FEED, A}};
 
-/* A junction that is landed on at feed, with the room before it that it needs, and a span behind it. */
+/*
+ * A junction that is landed on at feed, with the room before it that it needs, and a span behind
+ * it.
+ */
 static inline void lay_junction(struct ceiling *c, double feed)
 {
     const struct stretch after = {10.0, FEED, A};

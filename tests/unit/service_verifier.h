@@ -1,6 +1,6 @@
 /*
- * What the tests of the service share that verifier its setpoints: cycles, and the largest differences over them beside the
- * limits of the built-in mill's X, Y and Z.
+ * What the tests of the service share that verifier its setpoints: cycles, and the largest
+ * differences over them beside the limits of the built-in mill's X, Y and Z.
  */
 #ifndef TAKT_TESTS_SERVICE_VERIFIER_H
 #define TAKT_TESTS_SERVICE_VERIFIER_H

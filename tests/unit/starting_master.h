@@ -1,6 +1,7 @@
 /*
- * A master at the start of its drives, against fake nodes that do what their controlwords say: shared by the tests of
- * the start (test_drive_boot.c, test_drive_refusals.c) and of homing (test_drive_homing.c).
+ * A master at the start of its drives, against fake nodes that do what their controlwords say:
+ * shared by the tests of the start (test_drive_boot.c, test_drive_refusals.c) and of homing
+ * (test_drive_homing.c).
  */
 #ifndef TAKT_TESTS_STARTING_MASTER_H
 #define TAKT_TESTS_STARTING_MASTER_H

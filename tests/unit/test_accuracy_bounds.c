@@ -23,7 +23,10 @@ static void test_a_path_of_n_axes_is_root_n_times_as_fast_as_an_axis(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 200.0, takt_bounds_path_speed_mm_s(4, 0.001, 1e5));
 }
 
-/* The sum by hand of the recurrence V += trunc(a), S += trunc(V): each cycle of a ramp costs one unit more. */
+/*
+ * The sum by hand of the recurrence V += trunc(a), S += trunc(V): each cycle of a ramp costs one
+ * unit more.
+ */
 static void test_truncation_adds_up_as_the_recurrence_does(void)
 {
     for (unsigned half = 0; half < 30; half += 4) {

@@ -1,5 +1,6 @@
 /*
- * The figures of seed 000. They stand in the units of the paper: mm/min, mm, increments/mm, Hz; m/s3 for jerk.
+ * The figures of seed 000. They stand in the units of the paper: mm/min, mm, increments/mm, Hz;
+ * m/s3 for jerk.
  */
 #include "accuracy/cycle_frequency.h"
 #include "base/maths.h"
@@ -102,7 +103,10 @@ static void test_one_g_needs_1107_hz_without_a_feed_limit_and_not_the_1170_print
     TEST_ASSERT_DOUBLE_WITHIN(1.0, 115404.0, need.feed_mm_s * 60.0);
 }
 
-/* f = sqrt(a / (8 d)) where the tolerance is small beside the radius at which jerk and acceleration meet. */
+/*
+ * f = sqrt(a / (8 d)) where the tolerance is small beside the radius at which jerk and acceleration
+ * meet.
+ */
 static void test_the_plateau_does_not_depend_on_jerk(void)
 {
     double plateau = maths_sqrt(0.1 * STANDARD_GRAVITY_MM_S2 / 0.008);
@@ -141,7 +145,10 @@ static void test_on_the_ma655_jerk_meets_feed_at_40_mm_and_acceleration_at_55_mm
     TEST_ASSERT_EQUAL_UINT(CYCLE_LIMIT_ACCELERATION | CYCLE_LIMIT_JERK, governing);
 }
 
-/* Above the tolerance nothing needs more than the frequency found, by a scan that knows no branches. */
+/*
+ * Above the tolerance nothing needs more than the frequency found, by a scan that knows no
+ * branches.
+ */
 static void test_no_circle_needs_more_than_the_highest_need(void)
 {
     static const double feeds[] = {1.0, 1000.0, 7500.0, 1e6};

@@ -1,6 +1,6 @@
 /*
- * The compiled file, written and read: where blocks end comes back in order and as closely as the format says, however many
- * end at once, and many cost few bytes.
+ * The compiled file, written and read: where blocks end comes back in order and as closely as the
+ * format says, however many end at once, and many cost few bytes.
  */
 #include "ahead/encode.h"
 #include "base/maths.h"
@@ -38,7 +38,9 @@ static double between(double low, double high)
     return low + (high - low) * (double)(seed >> 11) / 9007199254740992.0;
 }
 
-/* An element of the path that begins, and so the one before ends, at a place; an interval is 1 mm. */
+/*
+ * An element of the path that begins, and so the one before ends, at a place; an interval is 1 mm.
+ */
 static void add_element(struct ahead_path *path, double start_mm)
 {
     path->element[path->count].start_mm = start_mm;

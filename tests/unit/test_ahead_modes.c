@@ -1,6 +1,6 @@
 /*
- * The flat curve of a machine with modes: what follows from it is what the machine does, and its changes are as the
- * optimiser has them.
+ * The flat curve of a machine with modes: what follows from it is what the machine does, and its
+ * changes are as the optimiser has them.
  */
 #include "ahead/modes.h"
 #include "ahead/trail.h"
@@ -47,7 +47,9 @@ static void at_part(double (*control)[3], double f, double point[3])
     trail_sum(control, weight, point);
 }
 
-/* The curve of a tool against the machine that follows the motors; how far it is off them at most. */
+/*
+ * The curve of a tool against the machine that follows the motors; how far it is off them at most.
+ */
 static double away_of(const struct trail *t, double (*curve)[3],
                       const struct vibration_config *config)
 {
@@ -155,8 +157,8 @@ static void test_where_the_curve_rests_motors_and_tool_do(void)
 }
 
 /*
- * Points of a parabola around x = 0, passed at the rate r: x is r x + s x^2 / 2 then, with s the change of r. What
- * differences of points are off derivatives, s by s, is left.
+ * Points of a parabola around x = 0, passed at the rate r: x is r x + s x^2 / 2 then, with s the
+ * change of r. What differences of points are off derivatives, s by s, is left.
  */
 static void test_a_change_of_time_is_known_to_first_order(void)
 {

@@ -1,5 +1,6 @@
 /*
- * The optimiser: a small path from a first guess to a legal trajectory, the same on any number of cores.
+ * The optimiser: a small path from a first guess to a legal trajectory, the same on any number of
+ * cores.
  */
 #include "ahead/guess.h"
 #include "ahead/solver.h"
@@ -114,8 +115,9 @@ static void test_two_cores_find_the_same_bits_as_one(void)
 }
 
 /*
- * A tolerance below what the curve's own bend takes: nothing fits, and each repair has slowed it down. On a small square:
- * the time goes with the repaired intervals, of which each repair makes more.
+ * A tolerance below what the curve's own bend takes: nothing fits, and each repair has slowed it
+ * down. On a small square: the time goes with the repaired intervals, of which each repair makes
+ * more.
  */
 static void test_the_place_where_it_is_stuck_is_on_the_path(void)
 {

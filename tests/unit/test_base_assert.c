@@ -1,4 +1,7 @@
-/* A broken invariant in a program on a desk: it says file, line and condition, and aborts. In every kind of build. */
+/*
+ * A broken invariant in a program on a desk: it says file, line and condition, and aborts. In every
+ * kind of build.
+ */
 #define _POSIX_C_SOURCE 200809L /* fork, pipe */
 
 #include "base/assert.h"

@@ -129,7 +129,9 @@ static void check_small_number(const char *digits, unsigned places)
     check_read_like_strtod(text);
 }
 
-/* Found by continued fractions: less than 2^-119 of their size from the middle between two doubles. */
+/*
+ * Found by continued fractions: less than 2^-119 of their size from the middle between two doubles.
+ */
 static void test_the_hardest_numbers_are_rounded_correctly(void)
 {
     check_small_number("3507665085003296281", 73);
@@ -266,8 +268,8 @@ static void test_writes_what_is_not_a_number_by_name(void)
 }
 
 /*
- * printf rounds exactly too, but ties to even: only there may it differ. value 10^places has the fraction 1/2
- * when value is an odd multiple of 2^-(places + 1).
+ * printf rounds exactly too, but ties to even: only there may it differ. value 10^places has the
+ * fraction 1/2 when value is an odd multiple of 2^-(places + 1).
  */
 static bool is_a_tie(double value, unsigned places)
 {

@@ -4,7 +4,10 @@
 #include <float.h>
 #include <stdio.h>
 
-/* Where long double is no longer than double, the functions compared with are off by up to 3 ulp themselves. */
+/*
+ * Where long double is no longer than double, the functions compared with are off by up to 3 ulp
+ * themselves.
+ */
 #define REFERENCE_ERROR_ULP (LDBL_MANT_DIG > DBL_MANT_DIG ? 0.0 : 3.0)
 
 /* |result - exact| in units of the last place of a double as large as exact. */
@@ -164,7 +167,10 @@ static void test_cbrt_and_ln_are_accurate_for_all_exponents(void)
                      1.0 + REFERENCE_ERROR_ULP);
 }
 
-/* The hardest arguments: the doubles nearest to the multiples of pi/2, where almost all digits cancel. */
+/*
+ * The hardest arguments: the doubles nearest to the multiples of pi/2, where almost all digits
+ * cancel.
+ */
 static void test_sine_and_cosine_keep_all_digits_next_to_every_quarter_turn(void)
 {
     const long double half_pi = 1.570796326794896619231321691639751442L;

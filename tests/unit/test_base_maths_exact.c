@@ -1,6 +1,6 @@
 /*
- * firmware/base/maths.h against itself and against what is known exactly. The digests at the end are the same on every
- * processor, or a bit differs.
+ * firmware/base/maths.h against itself and against what is known exactly. The digests at the end
+ * are the same on every processor, or a bit differs.
  */
 #include "base/fnv.h"
 #include "random_bits.h"

@@ -1,5 +1,6 @@
 /*
- * The paths: where they lead, that they are smooth, and that arcs and lines stay within their tolerance.
+ * The paths: where they lead, that they are smooth, and that arcs and lines stay within their
+ * tolerance.
  */
 #include "base/maths.h"
 #include "bore/job.h"

@@ -1,6 +1,7 @@
 /*
- * Removal along spirals against what is known of them: turns of an involute and of joined half circles are H apart along
- * their common normals, of Archimedes' spiral H apart from the centre; and against a picture whose points are counted.
+ * Removal along spirals against what is known of them: turns of an involute and of joined half
+ * circles are H apart along their common normals, of Archimedes' spiral H apart from the centre;
+ * and against a picture whose points are counted.
  */
 #include "bore/approximate.h"
 #include "bore/removal.h"
@@ -93,7 +94,10 @@ static void test_turns_of_an_involute_remove_the_step_everywhere(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.002 * STEP_MM, STEP_MM, e.layer_mm.most);
 }
 
-/* Where the turns are nearly circles: rings of thickness H at the outer side of a way of radius rho: H (rho + c - H / 2) for each rho of way. */
+/*
+ * Where the turns are nearly circles: rings of thickness H at the outer side of a way of radius
+ * rho: H (rho + c - H / 2) for each rho of way.
+ */
 static void test_chip_area_falls_as_the_radius_of_curvature_grows(void)
 {
     involute();
@@ -129,7 +133,8 @@ static void test_turns_of_archimedes_remove_less_where_the_spiral_is_steep(void)
 }
 
 /*
- * The edge before is nearly a circle of radius E = rho - H + c about the centre; the cutter's edge cuts it where
+ * The edge before is nearly a circle of radius E = rho - H + c about the centre; the cutter's edge
+ * cuts it where
  *     rho^2 + c^2 + 2 rho c cos(angle from the outer side) = E^2
  */
 static void test_engaged_angle_of_a_late_turn(void)
@@ -224,7 +229,10 @@ static void test_a_helix_removes_the_hole_evenly(void)
     bore_removal_free(&level);
 }
 
-/* What a level has left of the front half when the cutter stands at the angle a: points that no disc from 0 to a has held. */
+/*
+ * What a level has left of the front half when the cutter stands at the angle a: points that no
+ * disc from 0 to a has held.
+ */
 static double counted_engagement(double a)
 {
     unsigned free_points = 0;

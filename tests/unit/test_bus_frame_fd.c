@@ -1,6 +1,6 @@
 /*
- * Frames of CAN FD against a frame of this file, made bit by bit as ISO 11898-1:2015, 10.4.2 tells it: a list of fields, each
- * bit with the rate at which it is sent, stuffed when all is there.
+ * Frames of CAN FD against a frame of this file, made bit by bit as ISO 11898-1:2015, 10.4.2 tells
+ * it: a list of fields, each bit with the rate at which it is sent, stuffed when all is there.
  */
 #include "bus/frame_bits.h"
 #include "bus/frame_levels.h"
@@ -48,7 +48,10 @@ static void add(struct naive *n, unsigned value, unsigned bits, bool is_fast)
     }
 }
 
-/* Bits of all but the last five are followed by another one: a run of five at the end is not stuffed. */
+/*
+ * Bits of all but the last five are followed by another one: a run of five at the end is not
+ * stuffed.
+ */
 static unsigned stuff(const struct naive *plain, struct naive *stuffed)
 {
     unsigned added = 0;
@@ -200,7 +203,10 @@ static void fill_with_runs(struct can_frame *frame)
     }
 }
 
-/* 078: stuffed behind 00000, 1111 and 0000. Where the length's code ends a run too soon a stuffed bit is missing. */
+/*
+ * 078: stuffed behind 00000, 1111 and 0000. Where the length's code ends a run too soon a stuffed
+ * bit is missing.
+ */
 static void test_the_worst_frame_is_as_long_as_the_formula_says_but_for_one_bit_of_some_codes(void)
 {
     static const unsigned codes_one_less =

@@ -1,5 +1,6 @@
 /*
- * The client's end of SDO against frames written by hand, byte for byte as CiA 301, 7.2.4.3 has them.
+ * The client's end of SDO against frames written by hand, byte for byte as CiA 301, 7.2.4.3 has
+ * them.
  */
 #include "canopen/sdo_client.h"
 #include "unity.h"

@@ -1,4 +1,7 @@
-/* The source's feed: S-curve, diagram of a block with kl, limiter of axis velocities. By hand, and by sums. */
+/*
+ * The source's feed: S-curve, diagram of a block with kl, limiter of axis velocities. By hand, and
+ * by sums.
+ */
 #include "classic/diagram.h"
 #include "classic/limiter.h"
 #include "classic/product.h"

@@ -1,6 +1,7 @@
 /*
- * What reaches the disk, and in which order. The linker leads fsync and rename here (--wrap), which look at the files and
- * pass the call on; a power cut between two of them leaves what was brought to the disk before.
+ * What reaches the disk, and in which order. The linker leads fsync and rename here (--wrap), which
+ * look at the files and pass the call on; a power cut between two of them leaves what was brought
+ * to the disk before.
  */
 #define _XOPEN_SOURCE 700
 

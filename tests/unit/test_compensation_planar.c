@@ -208,7 +208,10 @@ static void test_distances_between_ways(void)
     TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, takt_planar_distance_point(&below, inside));
 }
 
-/* Of the circle with radius 1 about (x, 0), between two unrolled angles, with its string along Y = 1 at a third one. */
+/*
+ * Of the circle with radius 1 about (x, 0), between two unrolled angles, with its string along Y =
+ * 1 at a third one.
+ */
 static struct planar involute(double x, int8_t hand, double from, double to, double along)
 {
     struct planar c = {.centre = {x, 0.0}, .base_mm = 1.0, .involute = true, .hand = hand};

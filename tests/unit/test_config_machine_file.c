@@ -175,8 +175,8 @@ static void test_limits_below_the_rounding_of_setpoints_are_refused(void)
 }
 
 /*
- * SYNC 55, three TPDO1 of 6 bytes 3 * 115, a pair of targets 135, one target 95, a TPDO2 115 and a heartbeat 65 now
- * and then: 810 bits of 1000.
+ * SYNC 55, three TPDO1 of 6 bytes 3 * 115, a pair of targets 135, one target 95, a TPDO2 115 and a
+ * heartbeat 65 now and then: 810 bits of 1000.
  */
 static void test_the_predicted_load_of_three_axes_is_81_percent(void)
 {

@@ -1,4 +1,7 @@
-/* What a machine file says of the machine is all stored on a target, and nothing a file may say is refused there. */
+/*
+ * What a machine file says of the machine is all stored on a target, and nothing a file may say is
+ * refused there.
+ */
 #include "config/machine_keys.h"
 #include "storage/settings_fields.h"
 #include "unity.h"

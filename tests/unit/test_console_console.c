@@ -1,4 +1,4 @@
-/* The console on a service in virtual time: what a sender says, what it hears, and what the axes do. */
+/* The console on a service in virtual time: what a sender says and hears, and the axes do. */
 #include "console_bench.h"
 
 void setUp(void)

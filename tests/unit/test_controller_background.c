@@ -1,5 +1,6 @@
 /*
- * firmware/controller/controller.h: what the cycle does when the background does not keep up, on three virtual drives.
+ * firmware/controller/controller.h: what the cycle does when the background does not keep up, on
+ * three virtual drives.
  */
 #include "bus/bus.h"
 #include "controller/controller.h"
@@ -101,7 +102,10 @@ static void test_a_background_that_stops_is_waited_for_at_rest_and_counted(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.record.set.at[AXIS_X]);
 }
 
-/* The trapezoidal reference is made to wait at the first stop in every cycle: nothing that the controller knows of explains it. */
+/*
+ * The trapezoidal reference is made to wait at the first stop in every cycle: nothing that the
+ * controller knows of explains it.
+ */
 static void test_a_path_that_is_not_gone_on_along_is_a_fault_with_its_line(void)
 {
     start("G21 F3000\nG1 X1\nM2\n");

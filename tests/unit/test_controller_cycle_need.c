@@ -55,7 +55,9 @@ static void test_the_plane_that_needs_most_counts(void)
     machine.axis[AXIS_Z].max_acceleration_mm_s2 =
         500.0; /* now Y and Z have 500, X and the others 250 */
     takt_controller_cycle_need(&machine, &need, &limits);
-    /* sqrt(500 / 0.008) = 250, and a little more, since R = 0.05 mm is not far above the tolerance */
+    /*
+     * sqrt(500 / 0.008) = 250, and a little more, since R = 0.05 mm is not far above the tolerance
+     */
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 251.3, need.frequency_hz);
     TEST_ASSERT_EQUAL_DOUBLE(500.0, limits.acceleration_mm_s2);
 }

@@ -1,4 +1,7 @@
-/* A build without the forms of interpolation and feed for comparison refuses machines that ask for them. */
+/*
+ * A build without the forms of interpolation and feed for comparison refuses machines that ask for
+ * them.
+ */
 #include "classic/classic.h"
 #include "classic/interpolator.h"
 #include "classic/limiter.h"

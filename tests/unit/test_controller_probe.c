@@ -1,6 +1,6 @@
 /*
- * Probing moves and inputs, from the program to what it is told. Motion is a fake here: it goes along X at 1 mm a cycle,
- * and when it is to stop it goes on for BRAKING_MM.
+ * Probing moves and inputs, from the program to what it is told. Motion is a fake here: it goes
+ * along X at 1 mm a cycle, and when it is to stop it goes on for BRAKING_MM.
  */
 #include "controller/controller_probe.h"
 
@@ -264,7 +264,10 @@ static void test_inputs_are_read_at_once(void)
     expect_value(-2.5);
 }
 
-/* Sets the level of input 2 cycle by cycle, from a text of 0 and 1; returns after how many the answer came, 0: never. */
+/*
+ * Sets the level of input 2 cycle by cycle, from a text of 0 and 1; returns after how many the
+ * answer came, 0: never.
+ */
 static unsigned cycles_until_answered(const char *program, const char *levels)
 {
     memset(&probe, 0, sizeof(probe));

@@ -1,4 +1,7 @@
-/* The interior-point method on a straight line that is passed evenly: what its time has to become is known. */
+/*
+ * The interior-point method on a straight line that is passed evenly: what its time has to become
+ * is known.
+ */
 #include "base/maths.h"
 #include "convex/interior.h"
 

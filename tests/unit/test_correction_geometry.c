@@ -1,6 +1,7 @@
 /*
- * Errors of units, composed: random machines of three chains. Verified by a model of its own: rigid bodies with whole
- * rotation matrices, multiplied from the bed to the tool and from the bed to the part.
+ * Errors of units, composed: random machines of three chains. Verified by a model of its own: rigid
+ * bodies with whole rotation matrices, multiplied from the bed to the tool and from the bed to the
+ * part.
  */
 #include "base/maths.h"
 #include "correction/correction.h"

@@ -1,4 +1,6 @@
-/* Grids: the spline through a table's points, close to it by patches, and what following it takes. */
+/*
+ * Grids: the spline through a table's points, close to it by patches, and what following it takes.
+ */
 #include "correction/grid.h"
 #include "correction/grid_bound.h"
 #include "correction/grid_patch.h"
@@ -182,8 +184,9 @@ static void test_outside_the_edge_value_holds_from_one_step_on(void)
 }
 
 /*
- * Differences along a straight way at a constant speed: with two continuous derivatives the third difference stays as
- * small as the field's third derivative, at cell borders and at the edges of the table alike.
+ * Differences along a straight way at a constant speed: with two continuous derivatives the third
+ * difference stays as small as the field's third derivative, at cell borders and at the edges of
+ * the table alike.
  */
 static void test_a_way_through_cells_and_edges_has_no_jump_in_acceleration(void)
 {
@@ -217,7 +220,9 @@ static bool by_patch(const struct grid_patches *patches)
     return patches->patch[patches->used].valid;
 }
 
-/* What a cycle at a point adds by patches, compared with the grid itself: the largest difference. */
+/*
+ * What a cycle at a point adds by patches, compared with the grid itself: the largest difference.
+ */
 static double patch_error(struct grid_patches *patches, const struct point *at)
 {
     float direct[AXIS_COUNT] = {0}, near[AXIS_COUNT] = {0};
@@ -325,7 +330,7 @@ static double noise(unsigned output, const double *x)
     return random_between(-1, 1) < 0 ? -1e-3 : 1e-3;
 }
 
-/* A place in or beside one of a volume's corners, where what stands outside of the table counts most. */
+/* A place in or beside a volume's corner, where what stands outside of the table counts most. */
 static struct point near_a_corner(void)
 {
     const double step_mm[3] = {400.0 / 8, 400.0 / 6, 400.0 / 5};
@@ -339,7 +344,10 @@ static struct point near_a_corner(void)
     return at;
 }
 
-/* Bounds of K itself, and of its slope along an input: by the step of a table, over a thousandth of one. */
+/*
+ * Bounds of K itself, and of its slope along an input: by the step of a table, over a thousandth of
+ * one.
+ */
 static void test_the_bounds_of_value_and_slope_hold_beyond_the_ends_of_a_table_as_well(void)
 {
     const double step_mm[3] = {400.0 / 8, 400.0 / 6, 400.0 / 5};
@@ -419,7 +427,10 @@ static void test_the_need_bounds_what_following_the_table_takes(void)
     check_need(&d, &need, AXIS_X, 0, cycle_s);
 }
 
-/* The same by patches, of a noisy table, with the rounding that need counts: from slow motion to the fastest. */
+/*
+ * The same by patches, of a noisy table, with the rounding that need counts: from slow motion to
+ * the fastest.
+ */
 static void test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_other(void)
 {
     make_volume(noisy);

@@ -34,7 +34,10 @@ static void test_the_setup_layer_takes_back_a_turned_and_displaced_pallet(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.001, k.at[AXIS_C]);
 }
 
-/* Where a feature of the part is, by a displacement D of the part on its table and the table's own turn about P. */
+/*
+ * Where a feature of the part is, by a displacement D of the part on its table and the table's own
+ * turn about P.
+ */
 static void place_of(const double q[3], double psi, const double angle[3], double p[3])
 {
     double v[3], w[3];

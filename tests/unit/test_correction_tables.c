@@ -148,7 +148,10 @@ static void test_a_stored_table_comes_back_to_the_last_bit(void)
     TEST_ASSERT_EQUAL_MEMORY(other.value_mm, table.value_mm, sizeof(float) * 12);
 }
 
-/* Twelve bytes a point; the rest is a head, eight bytes for each position along an axis, and the checksum. */
+/*
+ * Twelve bytes a point; the rest is a head, eight bytes for each position along an axis, and the
+ * checksum.
+ */
 static void test_a_volume_of_two_thousand_points_is_stored_in_25_kilobytes(void)
 {
     static uint8_t bytes[24500];

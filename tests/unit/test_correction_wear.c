@@ -1,7 +1,8 @@
 /*
- * Wear of tools that point anywhere. Verified by the worn tool itself: corrected, it is to touch the floor and the wall that
- * the unworn one has touched. The head turns by Rodrigues' formula, and the wall's normal is what is left of "to the right"
- * when the way and the tool have been taken out of it (Gram-Schmidt).
+ * Wear of tools that point anywhere. Verified by the worn tool itself: corrected, it is to touch
+ * the floor and the wall that the unworn one has touched. The head turns by Rodrigues' formula, and
+ * the wall's normal is what is left of "to the right" when the way and the tool have been taken out
+ * of it (Gram-Schmidt).
  */
 #include "correction/correction.h"
 #include "unity.h"
@@ -139,7 +140,10 @@ static void random_wear(void)
     settings.wear_across_mm_s = between(0, 5e-5);
 }
 
-/* A tool somewhere, the plane, and the side of its contour. Returns the head's angle; d is where the tool points. */
+/*
+ * A tool somewhere, the plane, and the side of its contour. Returns the head's angle; d is where
+ * the tool points.
+ */
 static double random_tool(double d[SIDE])
 {
     const double angle = between(-7, 7);

@@ -1,6 +1,4 @@
-/*
- * Compensated programs, move by move. Figures by hand; whole contours are verified by geometry in the property test.
- */
+/* Compensated programs, move by move. Figures by hand; the property test verifies contours. */
 #include "cutter_compensation/cutter_compensation.h"
 
 #include "program_reader.h"
@@ -111,7 +109,7 @@ static void test_an_inner_corner_is_where_the_ways_cross(void)
     expect_end();
 }
 
-/* The line at height 3 meets the circle of radius 20 - 3 about (40, 0) where x = 40 + sqrt(17^2 - 3^2). */
+/* The line y = 3 meets the circle of radius 20 - 3 about (40, 0) at x = 40 + sqrt(17^2 - 3^2). */
 static void test_an_inner_corner_between_line_and_arc(void)
 {
     open_text("G41.1 D6\nG1 X20 F60\nX60\nG3 X40 Y20 I-20\n");
@@ -214,7 +212,7 @@ static void test_moves_of_a_contour_keep_what_is_their_own(void)
     expect_end();
 }
 
-/* A step of 1 under a tool of radius 5: the way at height 5 meets the circle about the step's edge at height 5. */
+/* A step of 1 under a tool of radius 5: the way at height 5 meets the circle about its edge. */
 static void test_a_step_lower_than_the_tool_is_passed_over_with_a_warning(void)
 {
     struct diagnostic warning;
@@ -391,7 +389,7 @@ static void test_a_rapid_goes_around_an_outer_corner_in_lines(void)
     expect_end();
 }
 
-/* A corner of 1e-5 rad: the ways cross 2.5e-5 mm beyond their ends, and no speck of an arc comes between. */
+/* A corner of 1e-5 rad: the ways cross 2.5e-5 mm beyond their ends, without an arc between. */
 static void test_a_corner_by_rounding_is_no_corner(void)
 {
     open_text("G41.1 D10\nG1 X20 F60\nX40\nX140 Y-0.001\n");
@@ -402,11 +400,12 @@ static void test_a_corner_by_rounding_is_no_corner(void)
 }
 
 /*
- * The tool goes outside around the circle of radius 1 about (0, 0), on one of radius 3; the line behind it climbs by
- * 0.001 from (0, 1). With a = atan 0.001, its way has the distance D = cos a + 2 from (0, 0), at its foot D (sin a, cos a),
- * and crosses the circle at sqrt(9 - D^2) before and behind that. What lies between is inside the circle.
+ * The tool goes outside around the circle of radius 1 about (0, 0), on one of radius 3; the line
+ * behind it climbs by 0.001 from (0, 1). With a = atan 0.001, its way has the distance D = cos a +
+ * 2 from (0, 0), at its foot D (sin a, cos a), and crosses the circle at sqrt(9 - D^2) before and
+ * behind that. What lies between is inside the circle.
  */
-/* Radius 2, orientation 3: the point that is led lies 2 mm beside the nose's centre along X, and 2 mm back along Z. */
+/* Radius 2, orientation 3: the point led lies 2 mm beside the nose's centre, and 2 mm back. */
 static void test_a_lathe_tool_is_led_beside_its_nose(void)
 {
     open_text("G18 G0 X30\nG42.1 D4 L3\nG1 X20 F60\nZ-20\nG2 X30 Z-30 I10\nG1 Y5\nG40 X40\n");

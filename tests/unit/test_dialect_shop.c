@@ -1,4 +1,7 @@
-/* host/dialect: what shops write: turrets, drilling and threads of lathes, polar coordinates, macros of printers. */
+/*
+ * host/dialect: what shops write: turrets, drilling and threads of lathes, polar coordinates,
+ * macros of printers.
+ */
 #include "dialect_expect.h"
 
 static void test_more_systems_are_the_last_ones_here(void)

@@ -1,6 +1,6 @@
 /*
- * The start of the drives: what the master asks and tells the nodes before the first setpoint, and what it makes of
- * their answers.
+ * The start of the drives: what the master asks and tells the nodes before the first setpoint, and
+ * what it makes of their answers.
  */
 #include "starting_master.h"
 
@@ -330,7 +330,9 @@ static void test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_befor
 
 static const struct drives_rates megabit = {1000000, 0};
 
-/* 55 + 10 n bits a frame: SYNC, pairs of targets, a status of each drive, a TPDO2 and a heartbeat. */
+/*
+ * 55 + 10 n bits a frame: SYNC, pairs of targets, a status of each drive, a TPDO2 and a heartbeat.
+ */
 static void test_the_load_is_that_of_the_worst_stuffed_frames(void)
 {
     static const uint32_t bits[] = {55 + 95 + 115 + 180, 55 + 135 + 230 + 180,

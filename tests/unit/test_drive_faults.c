@@ -1,5 +1,6 @@
 /*
- * What the master makes of everything that can go wrong. How the drives are stopped then: test_drive_stopping.c.
+ * What the master makes of everything that can go wrong. How the drives are stopped then:
+ * test_drive_stopping.c.
  */
 #include "lone_master.h"
 

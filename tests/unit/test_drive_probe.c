@@ -1,6 +1,6 @@
 /*
- * Touch probes of the drives, by the master: what they are told and asked, and what becomes of a drive that has none, is
- * not wired to the probe, or does not answer.
+ * Touch probes of the drives, by the master: what they are told and asked, and what becomes of a
+ * drive that has none, is not wired to the probe, or does not answer.
  */
 #include "starting_master.h"
 

@@ -1,5 +1,6 @@
 /*
- * How the master stops the drives after a fault: with setpoints to rest where there is time, by themselves where there is not.
+ * How the master stops the drives after a fault: with setpoints to rest where there is time, by
+ * themselves where there is not.
  */
 #include "lone_master.h"
 
@@ -185,7 +186,10 @@ static void test_a_warning_from_a_drive_that_falls_silent_is_a_loss(void)
     assert_fault(TAKT_ERROR_DRIVE_FAULT, 'Y');
 }
 
-/* Y stands behind its setpoint by before_inc, warns, and is behind by after_inc while the path goes on. */
+/*
+ * Y stands behind its setpoint by before_inc, warns, and is behind by after_inc while the path goes
+ * on.
+ */
 static enum drives_state state_after_warning_and_lag(int32_t before_inc, int32_t after_inc)
 {
     struct emcy emcy = {.node = 2, .code = 0x8210};

@@ -1,5 +1,6 @@
 /*
- * Drives without a mode of position: what they are told at the start, and the position loop that the master closes.
+ * Drives without a mode of position: what they are told at the start, and the position loop that
+ * the master closes.
  */
 #include "starting_master.h"
 
@@ -131,7 +132,10 @@ static void start_loop(double gain_per_s)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
 }
 
-/* The setpoints of a smooth move are followed by their velocity alone: nothing lags but what is rounded. */
+/*
+ * The setpoints of a smooth move are followed by their velocity alone: nothing lags but what is
+ * rounded.
+ */
 static void test_velocities_of_setpoints_lead_to_the_setpoints(void)
 {
     start_loop(100);

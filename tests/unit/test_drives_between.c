@@ -1,5 +1,6 @@
 /*
- * firmware/servo/between.h: the polynomial between targets, against the course that the targets are taken from.
+ * firmware/servo/between.h: the polynomial between targets, against the course that the targets are
+ * taken from.
  */
 #include "servo/between.h"
 #include "unity.h"
@@ -47,7 +48,10 @@ static void test_position_velocity_and_acceleration_are_continuous(void)
     }
 }
 
-/* Between them it is where the course is, a cycle later: straight lines are off by acceleration / 8. */
+/*
+ * Between them it is where the course is, a cycle later: straight lines are off by acceleration /
+ * 8.
+ */
 static void test_between_targets_it_follows_the_course_a_cycle_late(void)
 {
     double off = 0, straight = 0;

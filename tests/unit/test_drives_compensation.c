@@ -1,6 +1,6 @@
 /*
- * The drive's own table of its screw's error of pitch, and its backlash: objects 2010 and 2011. 1000 increments/mm, a cycle
- * of 1 ms.
+ * The drive's own table of its screw's error of pitch, and its backlash: objects 2010 and 2011.
+ * 1000 increments/mm, a cycle of 1 ms.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -249,7 +249,10 @@ static void test_values_of_another_hand_that_are_too_steep_are_none(void)
 
 /* ---- Backlash ---- */
 
-/* Where the axis stands after moves to and fro, on which drives do not overshoot: what they overshoot by, the play keeps. */
+/*
+ * Where the axis stands after moves to and fro, on which drives do not overshoot: what they
+ * overshoot by, the play keeps.
+ */
 static double worst_reversal_um(int32_t backlash_nm)
 {
     double worst_mm = 0, at_mm = 0;
@@ -315,7 +318,10 @@ static void look(void *context, uint32_t cycle_ns, struct motor_sense *sense)
 #define STEP_S       0.00025
 #define ACCELERATION 500.0
 
-/* Reversals at any time: the motor, which follows, has no step of velocity, and no more acceleration than it may. */
+/*
+ * Reversals at any time: the motor, which follows, has no step of velocity, and no more
+ * acceleration than it may.
+ */
 static void test_a_reversal_is_without_a_step_of_velocity_or_acceleration(void)
 {
     struct compensation c;
@@ -366,7 +372,9 @@ static void test_without_a_table_or_backlash_the_motor_is_the_axis_to_the_last_b
     }
 }
 
-/* Less than an increment is no reversal: what a target's last digit does is not what the axis does. */
+/*
+ * Less than an increment is no reversal: what a target's last digit does is not what the axis does.
+ */
 static void test_a_way_back_of_less_than_the_resolution_is_none(void)
 {
     struct compensation c;

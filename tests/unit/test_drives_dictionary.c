@@ -1,5 +1,6 @@
 /*
- * Data sheets of other makers, read into a virtual drive: every way in which the tools write them, and any bytes.
+ * Data sheets of other makers, read into a virtual drive: every way in which the tools write them,
+ * and any bytes.
  */
 #include "drives/dictionary_read.h"
 #include "lone_drive.h"
@@ -196,7 +197,9 @@ static void test_bits_above_the_identifier_of_sync_do_not_count(void)
     TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x180 + LONE_NODE));
 }
 
-/* A drive that takes its time hears nothing before it has booted, and answers as late as it says. */
+/*
+ * A drive that takes its time hears nothing before it has booted, and answers as late as it says.
+ */
 static void test_booting_and_answering_take_their_time(void)
 {
     const struct can_frame reset = {.id = 0, .length = 2, .data = {0x82, LONE_NODE}};

@@ -1,6 +1,6 @@
 /*
- * The object table, and the data sheet that is written from it: every entry of the sheet is an entry
- * of the drive, with its type, its access, its limits and its value at power-on.
+ * The object table, and the data sheet that is written from it: every entry of the sheet is an
+ * entry of the drive, with its type, its access, its limits and its value at power-on.
  */
 #define _POSIX_C_SOURCE 200809L
 

@@ -233,7 +233,9 @@ static void test_a_weak_motor_cannot_accelerate(void)
     start_with("power drive 5 weak ratio=0.001");
     lone_enable(&lone, 8);
     move(200);
-    /* h M / J = (0.01 / 2 pi) 3.8 / 3e-4 = 20 m/s2; a thousandth of it, half t^2 = 0.02 s2: 0.4 mm */
+    /*
+     * h M / J = (0.01 / 2 pi) 3.8 / 3e-4 = 20 m/s2; a thousandth of it, half t^2 = 0.02 s2: 0.4 mm
+     */
     double moved_mm = virtual_drive_get_position_mm(&lone.drive);
     TEST_ASSERT_TRUE(moved_mm > 0.2 && moved_mm < 0.45);
     TEST_ASSERT_TRUE(lone_statusword(&lone) & 0x0800);

@@ -86,8 +86,8 @@ static void test_every_method_finds_its_home_from_every_side(void)
 }
 
 /*
- * A home switch between the ends, longer and shorter than it takes to brake; pulses at multiples of 10 mm. Left and right of
- * its edges as CiA 402-2 has them.
+ * A home switch between the ends, longer and shorter than it takes to brake; pulses at multiples of
+ * 10 mm. Left and right of its edges as CiA 402-2 has them.
  */
 static void test_methods_of_a_home_switch_find_their_edge_from_every_side(void)
 {
@@ -111,7 +111,10 @@ static void test_methods_of_a_home_switch_find_their_edge_from_every_side(void)
     }
 }
 
-/* What is left and right of the switch is that of the drive: it begins at 3.21 and ends 3.3 mm below. */
+/*
+ * What is left and right of the switch is that of the drive: it begins at 3.21 and ends 3.3 mm
+ * below.
+ */
 static void test_methods_of_a_home_switch_are_those_of_the_motors_own_directions(void)
 {
     static const double pulses_mm[] = {10, 0, 0, -10, -10, 0, 0, 10};
@@ -147,7 +150,10 @@ static void test_a_negative_home_switch(void)
     }
 }
 
-/* The motor comes no farther; it stands there with the torque of 2003, and leaves it when it is homed. */
+/*
+ * The motor comes no farther; it stands there with the torque of 2003, and leaves it when it is
+ * homed.
+ */
 static void test_a_hard_stop_is_found_by_torque_and_left(void)
 {
     static const struct {

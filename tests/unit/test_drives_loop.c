@@ -290,8 +290,9 @@ static void test_a_moving_machine_stops_when_one_node_is_stopped(void)
 }
 
 /*
- * X and Y move along y = x / 2 at 100 and 50 mm/s when the node of Z is stopped. Setpoints are brought to rest on that
- * line within 0.2 s, as a feed hold does it: slower by 1/200 in every cycle.
+ * X and Y move along y = x / 2 at 100 and 50 mm/s when the node of Z is stopped. Setpoints are
+ * brought to rest on that line within 0.2 s, as a feed hold does it: slower by 1/200 in every
+ * cycle.
  */
 static double stop_beside_a_stopped_node(uint32_t stop_timeout_cycles)
 {

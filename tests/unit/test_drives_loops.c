@@ -1,6 +1,6 @@
 /*
- * Object 2020: gains of the loops and the inertia they are told, while they run; and a torque that comes late. 10 mm a turn, a cycle
- * of 1 ms of four steps.
+ * Object 2020: gains of the loops and the inertia they are told, while they run; and a torque that
+ * comes late. 10 mm a turn, a cycle of 1 ms of four steps.
  */
 #include "lone_drive.h"
 
@@ -69,7 +69,10 @@ static void test_a_gain_is_in_force_when_it_is_written(void)
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, 0.2, lag_mm());
 }
 
-/* As the torque is what the loops are told of the inertia, times an acceleration: told twice of it is twice the bandwidth. */
+/*
+ * As the torque is what the loops are told of the inertia, times an acceleration: told twice of it
+ * is twice the bandwidth.
+ */
 static void test_what_is_told_of_the_inertia_scales_the_gain(void)
 {
     lone_start(&lone);

@@ -1,5 +1,6 @@
 /*
- * Layer setting services of a virtual drive: it is found, configured, and another node from the next reset on.
+ * Layer setting services of a virtual drive: it is found, configured, and another node from the
+ * next reset on.
  */
 #define _POSIX_C_SOURCE 200809L /* fmemopen */
 

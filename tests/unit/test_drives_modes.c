@@ -1,6 +1,6 @@
 /*
- * Modes of operation of the drive but for homing: profile position, interpolated and cyclic position, and
- * what the option codes say of stopping. 1000 increments/mm, a cycle of 1 ms.
+ * Modes of operation of the drive but for homing: profile position, interpolated and cyclic
+ * position, and what the option codes say of stopping. 1000 increments/mm, a cycle of 1 ms.
  */
 #include "drive_modes_bench.h"
 
@@ -102,7 +102,10 @@ static struct peaks follow_command(unsigned cycles)
     return most;
 }
 
-/* The command's places are whole 1e-9 mm: 4e-9 mm / cycle^3 of jerk are their rounding, by the average of 100 or so less. */
+/*
+ * The command's places are whole 1e-9 mm: 4e-9 mm / cycle^3 of jerk are their rounding, by the
+ * average of 100 or so less.
+ */
 #define ROUNDING_MM_S3 1.0
 
 static void limit_jerk(uint32_t jerk_inc_s3)
@@ -116,7 +119,10 @@ static void limit_jerk(uint32_t jerk_inc_s3)
     (void)follow_command(0);
 }
 
-/* (400 + 2 900) mm/s2 by 20,000 mm/s3: 110 cycles longer than v / 2a + v / 2d + s / v = 0.1 + 0.0444 + 0.375 s. */
+/*
+ * (400 + 2 900) mm/s2 by 20,000 mm/s3: 110 cycles longer than v / 2a + v / 2d + s / v = 0.1 +
+ * 0.0444 + 0.375 s.
+ */
 static void test_a_profile_of_limited_jerk_lands_exactly_and_later_by_its_average(void)
 {
     limit_jerk(20000000);
@@ -263,7 +269,10 @@ static void test_without_a_rising_bit_4_nothing_moves(void)
     TEST_ASSERT_TRUE(command_mm() == 5);
 }
 
-/* 60C2 says that a target comes every 4 ms: the command is there in four cycles, in a straight line. */
+/*
+ * 60C2 says that a target comes every 4 ms: the command is there in four cycles, in a straight
+ * line.
+ */
 static void test_a_target_is_reached_in_the_interpolation_period(void)
 {
     (void)lone_write(&lone, 0x60C2, 1, 1, 4);
@@ -311,7 +320,10 @@ static void test_cyclic_targets_are_held_within_the_software_limits(void)
     TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
 }
 
-/* Targets of an even acceleration of 1000 mm/s2, a cycle late; between them the motor gets no steps of torque. */
+/*
+ * Targets of an even acceleration of 1000 mm/s2, a cycle late; between them the motor gets no steps
+ * of torque.
+ */
 static void test_cyclic_targets_are_followed_smoothly_if_60C0_says_so(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x60C0, 0, 2, 0xFFFF));

@@ -154,8 +154,9 @@ static void test_braking_stops_with_the_quick_stop_deceleration_and_then_stands(
 }
 
 /*
- * At the end of a stop the motor overshoots and turns round. In the cycle in which it does, way out and way back may
- * cancel, although it moves. What the encoder cannot tell from standstill is less than two steps in a loop period.
+ * At the end of a stop the motor overshoots and turns round. In the cycle in which it does, way out
+ * and way back may cancel, although it moves. What the encoder cannot tell from standstill is less
+ * than two steps in a loop period.
  */
 static void test_a_motor_that_is_said_to_stand_does_not_run_on_without_torque(void)
 {

@@ -1,5 +1,6 @@
 /*
- * Touch probes of a virtual drive: which edge is latched, when, and as what. 1000 increments/mm, a cycle of 1 ms.
+ * Touch probes of a virtual drive: which edge is latched, when, and as what. 1000 increments/mm, a
+ * cycle of 1 ms.
  */
 #include "lone_drive.h"
 

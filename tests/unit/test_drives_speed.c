@@ -1,5 +1,6 @@
 /*
- * Modes of velocity and torque, limits of profiles, and polarity. 1000 increments/mm, 10 mm a turn, a cycle of 1 ms.
+ * Modes of velocity and torque, limits of profiles, and polarity. 1000 increments/mm, 10 mm a turn,
+ * a cycle of 1 ms.
  */
 #include "lone_drive.h"
 

@@ -1,4 +1,7 @@
-/* How the drive stops: by a change of mode, disable operation, shutdown, quick stop and fault, as the option codes say. */
+/*
+ * How the drive stops: by a change of mode, disable operation, shutdown, quick stop and fault, as
+ * the option codes say.
+ */
 #include "drive_modes_bench.h"
 
 static void run_at_40_mm_s(unsigned cycles)

@@ -1,6 +1,6 @@
 /*
- * What a drive has stored, as bytes (firmware/servo/stored.h): any bytes are read or refused, and what was written is what
- * is read.
+ * What a drive has stored, as bytes (firmware/servo/stored.h): any bytes are read or refused, and
+ * what was written is what is read.
  */
 #include "lone_drive.h"
 #include "servo/stored.h"

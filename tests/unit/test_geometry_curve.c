@@ -37,7 +37,10 @@ static struct curve arc_of(struct point start, struct point end, double cx, doub
     return c;
 }
 
-/* Length of the polyline through n points at equal steps of s: below the curve's length, and near it. */
+/*
+ * Length of the polyline through n points at equal steps of s: below the curve's length, and near
+ * it.
+ */
 static double measured_length(const struct curve *c, int n)
 {
     struct point last = c->start;

@@ -1,5 +1,6 @@
 /*
- * Involutes against their definition (seed 001, eq. 2, 6, 11) and against differences of their own points.
+ * Involutes against their definition (seed 001, eq. 2, 6, 11) and against differences of their own
+ * points.
  */
 #include "base/maths.h"
 #include "geometry/involute.h"
@@ -37,7 +38,10 @@ static void page_point(double r, double phi, double psi, double *x, double *y)
     *y = r * (takt_maths_sin(phi + psi) - phi * takt_maths_cos(phi + psi) - takt_maths_sin(psi));
 }
 
-/* The same as a curve of this room, from one angle to another. way -1: its mirror image in the X axis. */
+/*
+ * The same as a curve of this room, from one angle to another. way -1: its mirror image in the X
+ * axis.
+ */
 static struct curve page_curve(double r, double from, double to, double psi, double way)
 {
     const double centre[2] = {-r * takt_maths_cos(psi), -way * r * takt_maths_sin(psi)};
@@ -156,7 +160,10 @@ static void test_the_junction_with_the_circle_keeps_curvature_and_not_its_deriva
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.0 / (ROUGH_PHI * ROUGH_R * ROUGH_R), bend.change_1_mm2);
 }
 
-/* The page: at constant feed the jerk is sqrt(1 + 1/phi^2) times the circle's, 5.1 times at phi = 0.2. */
+/*
+ * The page: at constant feed the jerk is sqrt(1 + 1/phi^2) times the circle's, 5.1 times at phi =
+ * 0.2.
+ */
 static void test_the_third_derivative_is_larger_than_a_circles_by_the_pages_factor(void)
 {
     const struct curve c = page_curve(2.0, 0.2, 9.0, 0.0, 1.0);
@@ -232,7 +239,10 @@ static void test_ends_that_no_involute_joins_are_refused(void)
         takt_curve_set_involute(&c, &inside, &end, PLANE_XY, (double[2]){0.0, 0.0}, 10.0, false));
 }
 
-/* Distance of p from the involute wanted, along its normal: the string from p touches the base circle. */
+/*
+ * Distance of p from the involute wanted, along its normal: the string from p touches the base
+ * circle.
+ */
 static double off_page(const struct point *p, double r, double psi)
 {
     const double x = p->at[AXIS_X] + r * takt_maths_cos(psi);
@@ -309,7 +319,9 @@ static void test_a_million_random_involutes_end_where_they_should(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, worst);
 }
 
-/* Pieces go on where the one before ended, and within each curvature changes by a quarter at most. */
+/*
+ * Pieces go on where the one before ended, and within each curvature changes by a quarter at most.
+ */
 static void check_pieces(const struct curve *c, unsigned pieces_max)
 {
     struct point at = c->start;
@@ -396,7 +408,10 @@ static void test_the_farthest_point_is_an_end_or_an_extreme(void)
     }
 }
 
-/* The page: a first step of 0.05 mm at r 0.63 is 2 um off. No step of the length allowed is farther off. */
+/*
+ * The page: a first step of 0.05 mm at r 0.63 is 2 um off. No step of the length allowed is farther
+ * off.
+ */
 static void test_no_chord_of_the_longest_step_leaves_the_curve_farther(void)
 {
     const struct curve c = page_curve(0.63, 0.0, 20.0, 0.0, 1.0);

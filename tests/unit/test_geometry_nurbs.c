@@ -1,6 +1,6 @@
 /*
- * Pieces of NURBS against closed forms: the circle, Bernstein's cubic, the basis functions of B-splines by their
- * recursion; and against differences of their own points.
+ * Pieces of NURBS against closed forms: the circle, Bernstein's cubic, the basis functions of
+ * B-splines by their recursion; and against differences of their own points.
  */
 #include "base/maths.h"
 #include "geometry/nurbs.h"
@@ -119,7 +119,10 @@ static void closed_form(const struct whole *w, double u, double at[2])
     at[1] = sum[1] / sum[2];
 }
 
-/* Distance of a point from the pieces: the nearest of them by ternary search, from where the last was on. */
+/*
+ * Distance of a point from the pieces: the nearest of them by ternary search, from where the last
+ * was on.
+ */
 static double distance_from(const struct curve *c, const double at[2])
 {
     double low = 0.0;
@@ -386,7 +389,10 @@ static void test_a_cusp_is_passed(void)
     TEST_ASSERT_TRUE(pieces < 400);
 }
 
-/* Knots that differ by decades make parts shorter than a piece may be; what is passed over must not stretch the next. */
+/*
+ * Knots that differ by decades make parts shorter than a piece may be; what is passed over must not
+ * stretch the next.
+ */
 static void test_pieces_are_even_beside_parts_too_short_for_a_piece(void)
 {
     struct whole w;
@@ -410,7 +416,10 @@ static void test_pieces_are_even_beside_parts_too_short_for_a_piece(void)
     }
 }
 
-/* Even knots from the first on: the curve of order 3 begins and ends in the middle between two control points. */
+/*
+ * Even knots from the first on: the curve of order 3 begins and ends in the middle between two
+ * control points.
+ */
 static void test_a_straight_piece_leads_to_a_curve_that_does_not_begin_at_its_first_point(void)
 {
     struct point at = {{4, 0}};

@@ -174,7 +174,9 @@ static uint32_t lcg(void)
     return seed >> 8;
 }
 
-/* Words of the language and rubbish, in any order: an error with a place, or faults within range. */
+/*
+ * Words of the language and rubbish, in any order: an error with a place, or faults within range.
+ */
 static void test_any_text_is_read_or_refused_with_its_place(void)
 {
     static const char *const words[] = {

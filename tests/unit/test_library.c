@@ -1,4 +1,7 @@
-/* takt as a library: the same run whatever the steps, the thread and the neighbours; nothing printed; errors told. */
+/*
+ * takt as a library: the same run whatever the steps, the thread and the neighbours; nothing
+ * printed; errors told.
+ */
 #include "library/library.h"
 
 #include <pthread.h>

@@ -1,4 +1,7 @@
-/* host/simulation/lockstep.h: for which drives a cycle waits. The test is the drive, at the other end of a pseudo-terminal. */
+/*
+ * host/simulation/lockstep.h: for which drives a cycle waits. The test is the drive, at the other
+ * end of a pseudo-terminal.
+ */
 #include "link/link.h"
 #include "simulation/lockstep.h"
 #include "unity.h"

@@ -105,7 +105,10 @@ static void expect_reply(const uint8_t *bytes, size_t size)
         expect_reply(expected, sizeof expected);                                                   \
     } while (0)
 
-/* Two checksums that others have published: of "123456789", and of a request of the standard's appendix. */
+/*
+ * Two checksums that others have published: of "123456789", and of a request of the standard's
+ * appendix.
+ */
 static void test_the_checksum_is_that_of_the_standard(void)
 {
     static const uint8_t request[] = {0x02, 0x07};
@@ -264,7 +267,10 @@ static void test_a_header_without_sense_ends_the_connection(void)
     TEST_ASSERT_EQUAL_INT(MODBUS_TCP_BROKEN, feed_all(too_long, sizeof too_long));
 }
 
-/* A length that is right for the frame and wrong for the function does not put the stream out of step. */
+/*
+ * A length that is right for the frame and wrong for the function does not put the stream out of
+ * step.
+ */
 static void test_a_wrong_length_is_answered_and_the_stream_goes_on(void)
 {
     static const uint8_t wrong[] = {0, 1, 0, 0, 0, 9, 1, 3, 0, 1, 0, 1, 7, 7, 7};

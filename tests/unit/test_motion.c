@@ -1,4 +1,7 @@
-/* The control cycle over a path: stops, dwell, end, hold and resume, override 0, an early end, too small a window. */
+/*
+ * The control cycle over a path: stops, dwell, end, hold and resume, override 0, an early end, too
+ * small a window.
+ */
 #include "motion/motion.h"
 
 #include "base/maths.h"
@@ -70,7 +73,10 @@ static uint64_t run_to_the_end(void)
     return motion.cycles;
 }
 
-/* T = D/a + a/j for a ramp of D = F, else 2 sqrt(D/j), whole time 2 T + the rest at F: seven segments. */
+/*
+ * T = D/a + a/j for a ramp of D = F, else 2 sqrt(D/j), whole time 2 T + the rest at F: seven
+ * segments.
+ */
 static double least_time(double length, double feed, double a, double j)
 {
     const double top = feed;
@@ -118,7 +124,10 @@ static void test_a_dwell_lasts_its_cycles_at_rest(void)
     TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 1.0);
 }
 
-/* Neither what stands there nor the next move is begun; a move in which the axes are is gone on with. */
+/*
+ * Neither what stands there nor the next move is begun; a move in which the axes are is gone on
+ * with.
+ */
 static void test_a_stop_is_not_passed_before_what_is_sent_has_come_to_it(void)
 {
     push(MOVE_FEED, 1.0, 50.0);
@@ -315,7 +324,10 @@ static void test_an_early_end_drops_the_rest_of_the_path(void)
     TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 0.0);
 }
 
-/* The next move comes only when the axes have rested at the end of the last one: they wait for it, and go on. */
+/*
+ * The next move comes only when the axes have rested at the end of the last one: they wait for it,
+ * and go on.
+ */
 static void test_a_starved_cycle_rests_and_goes_on(void)
 {
     push(MOVE_FEED, 1.0, 50.0);
@@ -336,8 +348,8 @@ static void test_no_cycle_is_made_before_anything_is_planned(void)
 }
 
 /*
- * Over blocks so short that the trapezoidal reference's place in a new ceiling takes more than a cycle to find, both are in use until
- * then, and nobody may make another one.
+ * Over blocks so short that the trapezoidal reference's place in a new ceiling takes more than a
+ * cycle to find, both are in use until then, and nobody may make another one.
  */
 static void test_no_ceiling_is_made_while_both_are_in_use(void)
 {

@@ -30,7 +30,9 @@ static void test_at_constant_feed_it_follows_half_the_window_behind(void)
     TEST_ASSERT_TRUE(average_lag(&average) == 18500.0);
 }
 
-/* After a start of acceleration a, one box of N: jerk by differences is a/N for N cycles, then 0. */
+/*
+ * After a start of acceleration a, one box of N: jerk by differences is a/N for N cycles, then 0.
+ */
 static void test_one_box_spreads_a_step_of_acceleration_over_its_cycles(void)
 {
     const uint64_t a = 1000;

@@ -123,7 +123,10 @@ static void test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself(void)
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
-/* Only blocks from the first on that is not known to be fast enough are asked about: none is forgotten when they are many. */
+/*
+ * Only blocks from the first on that is not known to be fast enough are asked about: none is
+ * forgotten when they are many.
+ */
 static void test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_that_brakes(void)
 {
     const struct hold *h = &motion.mover.beside.hold;

@@ -1,4 +1,6 @@
-/* A feed hold on an arc or a line of the exact path, and the way back to the trapezoidal reference. */
+/*
+ * A feed hold on an arc or a line of the exact path, and the way back to the trapezoidal reference.
+ */
 #include "base/maths.h"
 #include "motion/motion.h"
 #include "plan/path.h"

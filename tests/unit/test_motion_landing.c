@@ -1,4 +1,7 @@
-/* Landing in motion: the trapezoidal reference's way to a junction on which a setpoint falls exactly. */
+/*
+ * Landing in motion: the trapezoidal reference's way to a junction on which a setpoint falls
+ * exactly.
+ */
 #include "motion/landing.h"
 
 #include <unity.h>

@@ -1,10 +1,11 @@
 /*
  * The trapezoidal reference alone, under ceilings made by hand: no path, no blocks.
  *
- * A ceiling is laid of stretches, each for the setpoint from one place to the next, as spans.md says: it begins for the
- * trapezoidal reference feed (N - 1)/2 and two cycles earlier, never before the one before it; a lower acceleration so much earlier by
- * the highest feed, whatever the override. Accelerations do not rise from one stretch to the next, so no stretch left behind
- * asks for less.
+ * A ceiling is laid of stretches, each for the setpoint from one place to the next, as spans.md
+ * says: it begins for the trapezoidal reference feed (N - 1)/2 and two cycles earlier, never before
+ * the one before it; a lower acceleration so much earlier by the highest feed, whatever the
+ * override. Accelerations do not rise from one stretch to the next, so no stretch left behind asks
+ * for less.
  */
 #include "reference_bench.h"
 
@@ -102,7 +103,10 @@ static void test_it_leaves_a_stop_only_when_released(void)
 
 /* -- the end of what is known -- */
 
-/* A feed too high for the little that comes into view is lowered, but while something comes it is never rest. */
+/*
+ * A feed too high for the little that comes into view is lowered, but while something comes it is
+ * never rest.
+ */
 static void test_it_does_not_rest_while_the_path_goes_on(void)
 {
     const double comes_mm[] = {1.0, 0.1, 0.01, 0.001};

@@ -63,8 +63,9 @@ static void test_it_speeds_up_for_a_higher_override(void)
 }
 
 /*
- * A higher ceiling lets a stretch begin earlier, but not its lower acceleration. At whatever cycle the ceiling changes, the
- * trapezoidal reference comes to rest exactly at the stop, and changes its feed by no more than the stretch that it is in allows.
+ * A higher ceiling lets a stretch begin earlier, but not its lower acceleration. At whatever cycle
+ * the ceiling changes, the trapezoidal reference comes to rest exactly at the stop, and changes its
+ * feed by no more than the stretch that it is in allows.
  */
 static void run_with_change(const struct stretch *way, double ratio, unsigned change)
 {

@@ -67,7 +67,10 @@ static double random_part(uint32_t *state)
     return (double)(*state >> 8) / 16777216.0;
 }
 
-/* Lines to and fro in a fan of 6 degrees, 1e-3 to 1 mm long, each at a feed of its own: pieces, junctions and stops of all sorts. */
+/*
+ * Lines to and fro in a fan of 6 degrees, 1e-3 to 1 mm long, each at a feed of its own: pieces,
+ * junctions and stops of all sorts.
+ */
 static void push_crooked_way(uint32_t seed, int blocks)
 {
     struct move m;
@@ -87,7 +90,10 @@ static void push_crooked_way(uint32_t seed, int blocks)
     }
 }
 
-/* Going back from the end: how far from its origin a ceiling asks for the same as another, bit by bit. */
+/*
+ * Going back from the end: how far from its origin a ceiling asks for the same as another, bit by
+ * bit.
+ */
 static double equal_from_mm(const struct ceiling *a, const struct ceiling *b)
 {
     const double shift_mm = path_mm(b->origin, a->origin);
@@ -103,8 +109,10 @@ static double equal_from_mm(const struct ceiling *a, const struct ceiling *b)
     return i > 0 ? a->end_mm[i - 1] : 0.0;
 }
 
-/* A stream has passed other blocks than the same text in a file when a ceiling is made: it must not show in a single
- * bit, but for the first 11.5 cycles' way at 100 mm/s and what begins there. */
+/*
+ * A stream has passed other blocks than the same text in a file when a ceiling is made: it must not
+ * show in a single bit, but for the first 11.5 cycles' way at 100 mm/s and what begins there.
+ */
 static void test_what_a_ceiling_asks_for_does_not_depend_on_the_block_it_is_counted_from(void)
 {
     static struct ceiling later;
@@ -123,7 +131,10 @@ static void test_what_a_ceiling_asks_for_does_not_depend_on_the_block_it_is_coun
     }
 }
 
-/* N = A/J = 20 cycles: the setpoint is (20 - 1)/2 cycles behind, and two of margin. The feed may be up to 1.2 times that. */
+/*
+ * N = A/J = 20 cycles: the setpoint is (20 - 1)/2 cycles behind, and two of margin. The feed may be
+ * up to 1.2 times that.
+ */
 static void test_a_slower_block_begins_earlier_by_half_the_window(void)
 {
     push(MOVE_FEED, 50.0, 100.0);
@@ -155,7 +166,10 @@ static void test_feed_squared_falls_linearly_towards_a_stop(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * feed_squared, feed_squared, feed * feed);
 }
 
-/* Where a lower acceleration counts from is the same under every override: by the highest feed, 1.2 times the programmed. */
+/*
+ * Where a lower acceleration counts from is the same under every override: by the highest feed, 1.2
+ * times the programmed.
+ */
 static void test_no_override_changes_the_acceleration_anywhere(void)
 {
     push(MOVE_FEED, 50.0, 80.0);
@@ -175,7 +189,10 @@ static void test_no_override_changes_the_acceleration_anywhere(void)
     }
 }
 
-/* Else it could not be obeyed when it is raised: where the slow block begins for its highest feed had been passed too fast. */
+/*
+ * Else it could not be obeyed when it is raised: where the slow block begins for its highest feed
+ * had been passed too fast.
+ */
 static void test_no_override_leaves_the_way_to_be_faster_than_the_highest_one_does(void)
 {
     push(MOVE_FEED, 50.0, 80.0);
@@ -223,7 +240,9 @@ static void test_a_rapid_obeys_the_rapid_override(void)
     TEST_ASSERT_EQUAL(CEILING_RAPID | CEILING_HOLD, takt_ceiling_overrides(&ceiling, 0));
 }
 
-/* A short span needs no longer window than cbrt(L / 2J) = cbrt(0.001 mm / 100,000 mm/s3) = 2.15 ms. */
+/*
+ * A short span needs no longer window than cbrt(L / 2J) = cbrt(0.001 mm / 100,000 mm/s3) = 2.15 ms.
+ */
 static void test_a_short_span_has_a_short_window(void)
 {
     push(MOVE_FEED, 0.001, 80.0);
@@ -250,7 +269,10 @@ static void test_a_piece_of_constant_feed_ends_with_exactly_that_feed(void)
     }
 }
 
-/* Its blocks may have been overwritten: it has been left at the start of the oldest one that is kept at the latest. */
+/*
+ * Its blocks may have been overwritten: it has been left at the start of the oldest one that is
+ * kept at the latest.
+ */
 static void test_what_has_been_left_long_ago_was_left_where_the_oldest_block_starts(void)
 {
     push(MOVE_FEED, 20.0, 50.0);

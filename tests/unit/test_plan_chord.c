@@ -1,7 +1,7 @@
 /*
- * A control cycle that is too slow for a circle: its chord error limits the feed, and is then kept by the setpoints. 4 ms
- * and 1 um on a radius of 2 mm: (2/cycle) sqrt(2 R d - d^2) = 31.6 mm/s, far below what the axes could do. So it is at
- * corners.
+ * A control cycle that is too slow for a circle: its chord error limits the feed, and is then kept
+ * by the setpoints. 4 ms and 1 um on a radius of 2 mm: (2/cycle) sqrt(2 R d - d^2) = 31.6 mm/s, far
+ * below what the axes could do. So it is at corners.
  */
 #include "base/maths.h"
 #include "motion/motion.h"
@@ -122,7 +122,10 @@ static void test_a_cycle_that_is_fast_enough_is_not_limited_by_it(void)
     TEST_ASSERT_TRUE(run_circle() < 0.5 * CHORD_MM);
 }
 
-/* A polygon of lines of this length, each turned by so much, and the end of the program; as many corners as it has sides. */
+/*
+ * A polygon of lines of this length, each turned by so much, and the end of the program; as many
+ * corners as it has sides.
+ */
 static void push_polygon(const struct plan_limits *limits, double side_mm, double turn_rad,
                          struct point *corner)
 {

@@ -132,7 +132,10 @@ static void test_a_stop_closes_what_is_before_it(void)
     TEST_ASSERT_TRUE(jerk_budget_of(1) < NOTHING);
 }
 
-/* To slow down to a tenth of the feed and leave half of the jerk costs more than to stop with all of it. */
+/*
+ * To slow down to a tenth of the feed and leave half of the jerk costs more than to stop with all
+ * of it.
+ */
 static void test_a_turn_that_costs_more_than_a_stop_is_stopped_at(void)
 {
     const double half_rad =

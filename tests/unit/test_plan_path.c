@@ -144,7 +144,10 @@ static void test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it(void)
     TEST_ASSERT_EQUAL(path.pushed, path.closed);
 }
 
-/* Smoothed, it would be a curve of many pieces, slower than the line; before and behind it the axes stand. */
+/*
+ * Smoothed, it would be a curve of many pieces, slower than the line; before and behind it the axes
+ * stand.
+ */
 static void test_one_line_within_a_tolerance_is_planned_like_an_exact_one(void)
 {
     path.spare = 1;

@@ -1,4 +1,7 @@
-/* Blocks are read back from the ring as they were pushed: moves and curves to the last bit, limits never above theirs. */
+/*
+ * Blocks are read back from the ring as they were pushed: moves and curves to the last bit, limits
+ * never above theirs.
+ */
 #include "plan/path.h"
 
 #include "base/maths.h"
@@ -194,7 +197,9 @@ static void check_event(const struct move *a, const struct move *b)
     TEST_ASSERT_EQUAL(a->input_wait, b->input_wait);
 }
 
-/* Read in one, or in up to four parts, and before it is the oldest one. Needs two that are closed. */
+/*
+ * Read in one, or in up to four parts, and before it is the oldest one. Needs two that are closed.
+ */
 static void pass_and_check(void)
 {
     for (unsigned parts = below(9); parts > 0; parts--) {
@@ -356,7 +361,10 @@ static void read_back(const uint8_t *record, const uint8_t *const before[RECORD_
     takt_record_finish(record, b);
 }
 
-/* Every piece from its own control point and those of the three before it, one of which has all its own. */
+/*
+ * Every piece from its own control point and those of the three before it, one of which has all its
+ * own.
+ */
 static void test_a_piece_of_a_smoothed_curve_is_found_from_those_before(void)
 {
     static uint8_t bytes[8][RECORD_MAX];

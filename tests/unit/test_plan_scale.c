@@ -83,7 +83,10 @@ static void test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis(void)
     }
 }
 
-/* A second difference is off by 2 units, and 16 where one is put on an end: 1e-4 of the limit at most. */
+/*
+ * A second difference is off by 2 units, and 16 where one is put on an end: 1e-4 of the limit at
+ * most.
+ */
 static void test_nor_in_its_acceleration(void)
 {
     limits.jerk_mm_s3[AXIS_C] = 1e6;
@@ -153,7 +156,10 @@ static void test_the_longest_way_fits_into_path_positions(void)
     TEST_ASSERT_INT64_WITHIN(1024, SCALE_LENGTH_UNITS, block_to(1e-9, 1e18, 1.0).length);
 }
 
-/* The trapezoidal reference would come to it too late, and be beyond it before the setpoint has slowed down. */
+/*
+ * The trapezoidal reference would come to it too late, and be beyond it before the setpoint has
+ * slowed down.
+ */
 static void test_what_is_far_slower_than_a_cycle_of_braking_is_come_to_at_rest(void)
 {
     struct block fast = block_to(10.0, 0.0, 50.0);

@@ -64,7 +64,10 @@ static uint32_t cycles_by(enum ramp_profile profile, double length_mm, double fe
     return cycles_of_first();
 }
 
-/* Boxes that take 1.5 or twice as long as their first: sqrt(F / wJ) to a feed F, cbrt(L / 2Jw^2) from rest to rest over L. */
+/*
+ * Boxes that take 1.5 or twice as long as their first: sqrt(F / wJ) to a feed F, cbrt(L / 2Jw^2)
+ * from rest to rest over L.
+ */
 static void test_by_a_profile_of_more_boxes_the_first_is_shorter(void)
 {
     TEST_ASSERT_EQUAL(9, cycles_by(RAMP_PROFILE_SMOOTH, 100.0, 5.0));
@@ -74,7 +77,10 @@ static void test_by_a_profile_of_more_boxes_the_first_is_shorter(void)
     TEST_ASSERT_EQUAL(10, cycles_by(RAMP_PROFILE_GENTLE, 0.4, 100.0));
 }
 
-/* A slow end is come to earlier by half a window at its feed: here 0.7 of the longest window is the fastest. */
+/*
+ * A slow end is come to earlier by half a window at its feed: here 0.7 of the longest window is the
+ * fastest.
+ */
 static void test_a_slow_block_at_the_end_asks_for_a_shorter_window(void)
 {
     push(0.5, 50.0);
@@ -83,7 +89,9 @@ static void test_a_slow_block_at_the_end_asks_for_a_shorter_window(void)
     TEST_ASSERT_EQUAL(14, cycles_of_first());
 }
 
-/* From rest up through ever faster parts: with the end in sight, a stop, a shorter window would do. */
+/*
+ * From rest up through ever faster parts: with the end in sight, a stop, a shorter window would do.
+ */
 static void test_a_span_whose_end_is_out_of_sight_has_the_longest_window(void)
 {
     for (int i = 0; i < 60; i++) {
@@ -112,7 +120,10 @@ static void test_a_window_is_known_when_the_end_of_the_span_is(void)
     TEST_ASSERT_TRUE(takt_span_window(&path, &request, 0).known);
 }
 
-/* The window that a ceiling was made with is kept when more of the span is seen, by a trapezoidal reference close to it. */
+/*
+ * The window that a ceiling was made with is kept when more of the span is seen, by a trapezoidal
+ * reference close to it.
+ */
 static void test_a_window_once_promised_is_kept_close_by(void)
 {
     push(0.5, 50.0);
@@ -138,8 +149,9 @@ static void test_a_span_of_many_parts_has_a_window(void)
 }
 
 /*
- * To a stop at 0.02 mm 6 cycles are the longest of use. The trapezoidal reference is half a window ahead: to leave at 50 mm/s it goes
- * 0.02 mm + 0.05 (N - 1)/2 from rest by J N, which takes 31.1, 30.8, 30.6 and 30 cycles for N = 6, 4, 3 and 2.
+ * To a stop at 0.02 mm 6 cycles are the longest of use. The trapezoidal reference is half a window
+ * ahead: to leave at 50 mm/s it goes 0.02 mm + 0.05 (N - 1)/2 from rest by J N, which takes 31.1,
+ * 30.8, 30.6 and 30 cycles for N = 6, 4, 3 and 2.
  */
 static void test_a_short_block_that_is_left_in_motion_has_a_shorter_window_than_to_a_stop(void)
 {

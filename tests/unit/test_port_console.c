@@ -1,4 +1,7 @@
-/* A sender on the serial line of an image: what it is told it may send, and what becomes of bytes that find no room. */
+/*
+ * A sender on the serial line of an image: what it is told it may send, and what becomes of bytes
+ * that find no room.
+ */
 #include "embedded_bench.h"
 #include "port/embedded_console.h"
 

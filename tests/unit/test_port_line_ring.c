@@ -90,7 +90,10 @@ static void test_silences_survive_the_end_of_the_clock(void)
     TEST_ASSERT_TRUE(takt_line_ring_is_silent(&ring, 10 + GAP_US));
 }
 
-/* The interrupt's clock may be ahead of the background's: such a byte has not been silent for an hour. */
+/*
+ * The interrupt's clock may be ahead of the background's: such a byte has not been silent for an
+ * hour.
+ */
 static void test_a_byte_from_the_future_has_come_now(void)
 {
     bool silent;

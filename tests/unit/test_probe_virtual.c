@@ -175,7 +175,9 @@ static void test_a_hole_is_touched_from_inside(void)
     TEST_ASSERT_FALSE(touches(10.0, 9.0, -2.999, 0.0));
 }
 
-/* A corner at 20, 0, turned by 90 degrees about 10, 0 and displaced by 1, 2: it is at 11, 12 then. */
+/*
+ * A corner at 20, 0, turned by 90 degrees about 10, 0 and displaced by 1, 2: it is at 11, 12 then.
+ */
 static void test_a_part_stands_displaced_and_turned(void)
 {
     read_text("part by 1 2 0  turned 0 0 90  about 10 0 0\nbox X 20 * Y 0 *\n");

@@ -165,7 +165,10 @@ static void test_the_rest_of_an_input_s_line_waits_too(void)
     expect_end();
 }
 
-/* The tool's centre is at (20, 3) when G40 comes; nothing of the contour may be kept back by the input. */
+/*
+ * The tool's centre is at (20, 3) when G40 comes; nothing of the contour may be kept back by the
+ * input.
+ */
 static void test_a_contour_is_done_before_the_program_waits(void)
 {
     open_waiting("G41.1 D6\nG1 X20 F60\nX40\nG40\nM66 P1\nG1 X60 Y#5399\n");

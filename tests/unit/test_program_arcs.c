@@ -1,4 +1,6 @@
-/* firmware/program/circular.h and travel.h: where an arc's centre is, and how far the arc reaches. */
+/*
+ * firmware/program/circular.h and travel.h: where an arc's centre is, and how far the arc reaches.
+ */
 #include "program_reader.h"
 
 #include <stdint.h>
@@ -79,7 +81,10 @@ static void test_absolute_centres_are_work_coordinates(void)
     check_error("F60 G90.1 G18 G2 X2 I1", TAKT_ERROR_ARC_CENTRE_PARTIAL, "K", 0.0);
 }
 
-/* The law of R: |centre - start| = |centre - end| = |R|, and a turn below half for R > 0, above for R < 0. */
+/*
+ * The law of R: |centre - start| = |centre - end| = |R|, and a turn below half for R > 0, above for
+ * R < 0.
+ */
 static void check_radius_form(uint64_t *state)
 {
     const double start[2] = {random_between(state, -50.0, 50.0),
@@ -263,8 +268,8 @@ static void write_random_arc(char *text, size_t size, uint64_t *state, struct po
 }
 
 /*
- * Random arcs against a limit between their ends and their extremes. An arc is refused if a point of it lies
- * outside; one that is refused has a point beyond the limit less the sampling error.
+ * Random arcs against a limit between their ends and their extremes. An arc is refused if a point
+ * of it lies outside; one that is refused has a point beyond the limit less the sampling error.
  */
 static void test_an_arc_is_refused_if_and_only_if_it_leaves_the_travel(void)
 {

@@ -33,7 +33,10 @@ static void test_offsets_add_up(void)
     (void)reader_expect(&reader, MOVE_RAPID, 16.0, 12.25, 1.0);
 }
 
-/* The interpreter keeps machine positions, so an axis that is not named keeps its bits through any offset. */
+/*
+ * The interpreter keeps machine positions, so an axis that is not named keeps its bits through any
+ * offset.
+ */
 static void test_an_axis_without_a_word_stays_exactly_where_it_is(void)
 {
     reader_open(&reader, "#5241=0.1 #5242=0.7\nG0 X0.3 Y0.2\nG55 Y1.1\nG92 X0.17\nY1.3\nG54 Y1.7");
@@ -198,7 +201,10 @@ static void test_axes_the_machine_does_not_have_are_refused_by_name(void)
     }
 }
 
-/* 0.1 + 0.2 - 0.3 is not 0: a difference that has no length must not turn degrees per minute into mm. */
+/*
+ * 0.1 + 0.2 - 0.3 is not 0: a difference that has no length must not turn degrees per minute into
+ * mm.
+ */
 static void test_the_rounding_of_linear_axes_does_not_change_the_unit_of_feed(void)
 {
     struct move move;

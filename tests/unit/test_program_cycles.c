@@ -147,7 +147,10 @@ static void test_a_cycle_keeps_to_the_path_whatever_g64_says(void)
     TEST_ASSERT_EQUAL_INT(PATH_BLEND, reader_next(&reader, MOVE_RAPID).path);
 }
 
-/* With R2 the cuts are 0.3 sqrt(n) deep below the crest at 4 mm from the drive line; n = 12 would pass 1.0. */
+/*
+ * With R2 the cuts are 0.3 sqrt(n) deep below the crest at 4 mm from the drive line; n = 12 would
+ * pass 1.0.
+ */
 static void test_a_thread_is_cut_to_equal_areas(void)
 {
     reader_open(&reader, "M3 S60\nG0 X20\nG76 P1.5 Z-10 I-4 J0.3 K1 R2");

@@ -1,7 +1,12 @@
-/* Programs that read the same lines again and again, and texts in which no line can be read twice. */
+/*
+ * Programs that read the same lines again and again, and texts in which no line can be read twice.
+ */
 #include "program_flow_bench.h"
 
-/* A jump of a translator (O<place> GOTO line blocks), and a line that goes on: what lies behind is as new, and read again, as elsewhere. */
+/*
+ * A jump of a translator (O<place> GOTO line blocks), and a line that goes on: what lies behind is
+ * as new, and read again, as elsewhere.
+ */
 static void test_a_circle_behind_a_jump_forward_is_stopped(void)
 {
     expect_refused("o23 goto [3] [0]\nG0 X1\no1 while [1]\n#1=2\no1 endwhile\n", TAKT_ERROR_CIRCLE,

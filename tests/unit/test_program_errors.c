@@ -18,7 +18,9 @@ struct faulty {
     const char *word;
 };
 
-/* One line of every kind of fault; those of expressions, arcs and events have tests of their own. */
+/*
+ * One line of every kind of fault; those of expressions, arcs and events have tests of their own.
+ */
 static const struct faulty table[] = {
     {"G0 X1\nG77 D1", TAKT_ERROR_WORD_UNKNOWN, 2, 1, "G77"},
     {"X1 G89.5 K1", TAKT_ERROR_WORD_UNKNOWN, 1, 4, "G89.5"},
@@ -82,7 +84,10 @@ static void test_reading_goes_on_with_the_next_line(void)
     reader_expect_end(&reader);
 }
 
-/* The faulty line selects every other mode before it fails, and moves to one of two points before the second. */
+/*
+ * The faulty line selects every other mode before it fails, and moves to one of two points before
+ * the second.
+ */
 static void test_a_faulty_line_changes_no_mode_and_moves_nothing(void)
 {
     struct move move;

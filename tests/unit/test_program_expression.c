@@ -1,4 +1,6 @@
-/* firmware/program/expression.h: what values mean, and what is wrong with those that mean nothing. */
+/*
+ * firmware/program/expression.h: what values mean, and what is wrong with those that mean nothing.
+ */
 #include "program_reader.h"
 
 #include <stdio.h>

@@ -82,7 +82,10 @@ static void expect_setup(unsigned which, double value, bool ends)
     TEST_ASSERT_EQUAL_UINT(4, move.line);
 }
 
-/* What was told last of each number, all of it together, with the tool up and before it goes across. */
+/*
+ * What was told last of each number, all of it together, with the tool up and before it goes
+ * across.
+ */
 static void test_the_part_is_set_up_as_the_lines_before_have_it(void)
 {
     open_at(4, "G10 L13 X0.5 K2\nG0 X1 Z3\nG10 L13 X0.7 R-1\nX2 Z2\n");

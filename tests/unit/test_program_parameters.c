@@ -84,7 +84,9 @@ static void test_parameters_set_back_to_zero_make_room_for_others(void)
     }
 }
 
-/* A line that fails gives back what it took: also where the place of a zero has been taken since. */
+/*
+ * A line that fails gives back what it took: also where the place of a zero has been taken since.
+ */
 static void test_a_faulty_line_in_a_full_store_assigns_nothing(void)
 {
     const unsigned last = 98 + PARAMETERS_MAX;

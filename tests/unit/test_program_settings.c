@@ -220,7 +220,10 @@ static void takt_involute_point(double r, double phi, double way, double *x, dou
     *y = way * r * (takt_maths_sin(phi) - phi * takt_maths_cos(phi));
 }
 
-/* From phi to phi, turning by way; off: how far the end lies off the involute, along the normal there. */
+/*
+ * From phi to phi, turning by way; off: how far the end lies off the involute, along the normal
+ * there.
+ */
 static enum program_result read_involute(double from, double to, double way, double off)
 {
     const double r = 4.0;

@@ -1,6 +1,6 @@
 /*
- * The room program with the sizes it has in the images, hal/CMakeLists.txt: what they must have room for, and what comes
- * when it is not enough.
+ * The room program with the sizes it has in the images, hal/CMakeLists.txt: what they must have
+ * room for, and what comes when it is not enough.
  */
 #include "program_reader.h"
 
@@ -62,7 +62,10 @@ static void expect_refusal(enum takt_error code, unsigned line, unsigned column,
     TEST_ASSERT_EQUAL_DOUBLE(value, reader.diagnostic.value);
 }
 
-/* Each call has 12 arguments, of which the last is not 0, a name of its own, and an open IF; the innermost saves modes. */
+/*
+ * Each call has 12 arguments, of which the last is not 0, a name of its own, and an open IF; the
+ * innermost saves modes.
+ */
 static void test_ten_calls_have_room_and_find_their_own_again(void)
 {
     static const double minus_0 = -0.0;
@@ -87,7 +90,9 @@ static void test_ten_calls_have_room_and_find_their_own_again(void)
     TEST_ASSERT_EQUAL_MEMORY(&minus_0, &reader.parameters.local[11], sizeof(minus_0));
 }
 
-/* 160 numbers: 30 of the main program's #1 ... and of five calls' leave 10, too few for the sixth. */
+/*
+ * 160 numbers: 30 of the main program's #1 ... and of five calls' leave 10, too few for the sixth.
+ */
 static void test_calls_that_keep_too_much_are_refused(void)
 {
     add("#30=1\no1 sub\n", 1);

@@ -1,4 +1,6 @@
-/* firmware/program/words.h: which words may stand on a line together, and in which order they act. */
+/*
+ * firmware/program/words.h: which words may stand on a line together, and in which order they act.
+ */
 #include "program_reader.h"
 
 static struct reader reader;

@@ -1,6 +1,7 @@
 /*
- * Coming to rest at a place: on machines of any kind, from any state and over any way, the axes need no more than the
- * curve leaves them, stand exactly at the place, and are not much slower than the bounds allow.
+ * Coming to rest at a place: on machines of any kind, from any state and over any way, the axes
+ * need no more than the curve leaves them, stand exactly at the place, and are not much slower than
+ * the bounds allow.
  */
 #include "base/maths.h"
 #include "random_rate.h"
@@ -29,7 +30,10 @@ void tearDown(void)
 {
 }
 
-/* What the last cycles have led, verified by differences as setpoints are at a place where the axes move evenly. */
+/*
+ * What the last cycles have led, verified by differences as setpoints are at a place where the axes
+ * move evenly.
+ */
 struct differences {
     double way[4];
 };

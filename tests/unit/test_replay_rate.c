@@ -1,6 +1,6 @@
 /*
- * The rate of a compiled program: whatever is asked for, what the axes need for it stays within what the curve leaves
- * them, on machines of any kind; and every rate is come to.
+ * The rate of a compiled program: whatever is asked for, what the axes need for it stays within
+ * what the curve leaves them, on machines of any kind; and every rate is come to.
  */
 #include "base/maths.h"
 #include "random_rate.h"

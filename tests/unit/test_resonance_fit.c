@@ -29,8 +29,8 @@ static double foot_at(int k)
 }
 
 /*
- * Behind a change D of its foot's velocity a mode is away by -D exp(-d w t) sin(v t) / v, v = w sqrt(1 - d^2). A step in one
- * cycle is two of them.
+ * Behind a change D of its foot's velocity a mode is away by -D exp(-d w t) sin(v t) / v, v = w
+ * sqrt(1 - d^2). A step in one cycle is two of them.
  */
 static double away_at(int k, double hz, double damping)
 {

@@ -1,5 +1,6 @@
 /*
- * What a service keeps over power-off: as text and back, and on a disk that loses power at every one of its writes.
+ * What a service keeps over power-off: as text and back, and on a disk that loses power at every
+ * one of its writes.
  */
 #include "serve/state_keeper.h"
 #include "unity.h"
@@ -16,8 +17,8 @@ static struct tool tools[TOOLS], read_tools[TOOLS], offered_tools[TOOLS];
 static struct state state, read;
 
 /*
- * A disk: what has been brought to it, and what has only been written. When power fails at a step, any part of what has only
- * been written may be there.
+ * A disk: what has been brought to it, and what has only been written. When power fails at a step,
+ * any part of what has only been written may be there.
  */
 static struct disk {
     uint8_t kept[FLASH_SECTORS][SECTOR_BYTES], written[FLASH_SECTORS][SECTOR_BYTES];
@@ -192,15 +193,15 @@ static void test_a_power_cut_at_every_write_leaves_the_last_state_or_the_one_bef
 }
 
 /*
- * A session in virtual time: changes at random moments, a control thread that looks every millisecond, a disk on which a state
- * takes WRITE_NS. Power fails at one of the disk's steps.
+ * A session in virtual time: changes at random moments, a control thread that looks every
+ * millisecond, a disk on which a state takes WRITE_NS. Power fails at one of the disk's steps.
  */
 #define MILLISECOND_NS UINT64_C(1000000)
 #define AGE_MAX_NS     (1000 * MILLISECOND_NS)
 
 /*
- * The slowest disk for that age: a change waits until the write before it is done, at least STATE_KEEPER_OFFER_NS from its
- * offer on, and for its own write; and is seen two looks late.
+ * The slowest disk for that age: a change waits until the write before it is done, at least
+ * STATE_KEEPER_OFFER_NS from its offer on, and for its own write; and is seen two looks late.
  */
 #define WRITE_NS ((AGE_MAX_NS - 2 * MILLISECOND_NS) / 2)
 
@@ -357,7 +358,10 @@ static void test_a_line_that_makes_no_sense_is_told(void)
     TEST_ASSERT_FALSE(reads("takt-state 1\nparameter 31 5", problem)); /* no line end */
 }
 
-/* Every text that is cut off or has one byte changed is read, or told to be wrong: nothing else happens. */
+/*
+ * Every text that is cut off or has one byte changed is read, or told to be wrong: nothing else
+ * happens.
+ */
 static void test_any_bytes_are_read_or_refused(void)
 {
     char problem[STATE_PROBLEM_MAX + 1];

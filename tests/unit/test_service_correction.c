@@ -1,6 +1,6 @@
 /*
- * firmware/service/service.h: position-error correction that goes on from one program to the next and between them, and
- * is switched by the operator.
+ * firmware/service/service.h: position-error correction that goes on from one program to the next
+ * and between them, and is switched by the operator.
  */
 #include "service_verifier.h"
 
@@ -126,7 +126,10 @@ static void test_a_program_switches_a_layer_and_the_next_has_it_again(void)
     expect_limits_kept();
 }
 
-/* The drives are enabled where they stand: what is there is taken for a commanded place, and corrected from it on. */
+/*
+ * The drives are enabled where they stand: what is there is taken for a commanded place, and
+ * corrected from it on.
+ */
 static void test_a_set_up_fades_in_and_lasts_for_the_next_program(void)
 {
     verified_cycles(SETTLED);

@@ -1,5 +1,6 @@
 /*
- * firmware/service/service.h: coming to rest on the path and going on, for every cause; giving up; jogs that are let go.
+ * firmware/service/service.h: coming to rest on the path and going on, for every cause; giving up;
+ * jogs that are let go.
  */
 #include "service_verifier.h"
 
@@ -90,7 +91,10 @@ static void test_a_feed_override_of_0_rests_and_of_more_goes_on(void)
     expect_limits_kept();
 }
 
-/* The spindle's drive is lost in a cut: the axes rest within their limits, and stay until the operator has seen it. */
+/*
+ * The spindle's drive is lost in a cut: the axes rest within their limits, and stay until the
+ * operator has seen it.
+ */
 static void test_a_spindle_lost_in_a_cut_rests_the_axes_until_acknowledged(void)
 {
     load("G21 F3000\nM3 S6000\nG1 X200\nM2\n");

@@ -1,5 +1,6 @@
 /*
- * What a panel is shown of the program: coordinates, modes, the way left; and what it sets of tools and offsets.
+ * What a panel is shown of the program: coordinates, modes, the way left; and what it sets of tools
+ * and offsets.
  */
 #include "base/maths.h"
 #include "service_bench.h"

@@ -1,5 +1,6 @@
 /*
- * firmware/service/service.h: programs, lines, jogs, homing, faults and settings, as a panel orders them.
+ * firmware/service/service.h: programs, lines, jogs, homing, faults and settings, as a panel orders
+ * them.
  */
 #include "service_bench.h"
 

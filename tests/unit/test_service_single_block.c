@@ -1,6 +1,7 @@
 /*
- * firmware/service/service.h: single block, switched on and off while a program runs. It holds at the next block end at
- * which the axes can come to rest within their limits, exactly there, and nowhere else.
+ * firmware/service/service.h: single block, switched on and off while a program runs. It holds at
+ * the next block end at which the axes can come to rest within their limits, exactly there, and
+ * nowhere else.
  */
 #include "service_verifier.h"
 
@@ -28,7 +29,9 @@ static unsigned draw(unsigned below)
     return (unsigned)(chance >> 33) % below;
 }
 
-/* 300 mm along X at 50 mm/s in blocks of this many tenths of a mm, on their way for half a second. */
+/*
+ * 300 mm along X at 50 mm/s in blocks of this many tenths of a mm, on their way for half a second.
+ */
 static void cut(unsigned tenths)
 {
     static char text[60000];

@@ -1,4 +1,7 @@
-/* Trains of impulses that meet a machine's modes: what they leave of a swing, when, and of which limits. */
+/*
+ * Trains of impulses that meet a machine's modes: what they leave of a swing, when, and of which
+ * limits.
+ */
 #include "base/maths.h"
 #include "classic/shapers.h"
 #include "shape/shape.h"
@@ -37,7 +40,10 @@ static struct shape_mode random_mode(void)
     return (struct shape_mode){between(10, 60), between(0.02, 0.1), 1};
 }
 
-/* What is left of a swing, as part of that of one impulse at the end of the train: |sum of w z^(length - c)|. */
+/*
+ * What is left of a swing, as part of that of one impulse at the end of the train: |sum of w
+ * z^(length - c)|.
+ */
 static double left_of(const struct train *t, const struct shape_mode *mode)
 {
     const double w = MATHS_TWO_PI * mode->hz * CYCLE_S;
@@ -77,7 +83,10 @@ static void test_zv_leaves_nothing_of_a_mode_whatever_its_period_is_of_a_cycle(v
     }
 }
 
-/* Residuals of the textbook: MZV none, EI 5 %, but for standing between cycles: (w tau)^2/8 at most. */
+/*
+ * Residuals of the textbook: MZV none, EI 5 %, but for standing between cycles: (w tau)^2/8 at
+ * most.
+ */
 static void test_classic_trains_leave_what_the_textbook_says(void)
 {
     for (unsigned i = 0; i < CASES; i++) {

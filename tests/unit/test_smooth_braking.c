@@ -1,4 +1,7 @@
-/* The way that slowing down takes under an acceleration and a jerk, against the same gone in small steps. */
+/*
+ * The way that slowing down takes under an acceleration and a jerk, against the same gone in small
+ * steps.
+ */
 #include "smooth/braking.h"
 
 #include "base/maths.h"
@@ -36,7 +39,9 @@ static void test_braking_to_rest_takes_the_way_of_the_closed_form(void)
                               braked(&stiff, 100, 0, 0));
 }
 
-/* The same in steps of a 4,000th of the time: jerk down, hold, jerk up, each as late as it may be. */
+/*
+ * The same in steps of a 4,000th of the time: jerk down, hold, jerk up, each as late as it may be.
+ */
 static double gone(const struct braking_limits *l, double feed, double acceleration, double to)
 {
     const double t = 5e-6;

@@ -1,4 +1,7 @@
-/* A smoothed curve goes on along its path, and so do the numbers of motions that its pieces say they belong to. */
+/*
+ * A smoothed curve goes on along its path, and so do the numbers of motions that its pieces say
+ * they belong to.
+ */
 #include "smooth/smooth.h"
 
 #include "base/maths.h"
@@ -118,7 +121,10 @@ static void run_chords(uint32_t first, uint32_t last, double tolerance_mm)
     finish();
 }
 
-/* Near the lowest point some two hundred chords lie in one line: the curve comes to rest where the route is full. */
+/*
+ * Near the lowest point some two hundred chords lie in one line: the curve comes to rest where the
+ * route is full.
+ */
 static void test_numbers_of_motions_never_go_back_where_the_curve_rests_within_a_chain(void)
 {
     run_chords(4301, 5200, 4e-4);

@@ -1,4 +1,7 @@
-/* Does a curve follow the route in order? What can be known by hand: strokes, corners and loops of a few tolerances. */
+/*
+ * Does a curve follow the route in order? What can be known by hand: strokes, corners and loops of
+ * a few tolerances.
+ */
 #include "smooth/order.h"
 
 #include "base/maths.h"
@@ -125,7 +128,10 @@ static void test_a_stroke_is_cut_short_by_the_tolerance_at_most(void)
     }
 }
 
-/* To 1, back by a stroke, and on to 3, with a curve that goes straight through: it stands for half of the stroke. */
+/*
+ * To 1, back by a stroke, and on to 3, with a curve that goes straight through: it stands for half
+ * of the stroke.
+ */
 static bool leaves_out_stroke(double stroke_mm, double chord_mm)
 {
     setUp();
@@ -179,7 +185,10 @@ static void test_a_corner_is_passed_nearer_where_chords_leave_the_curve(void)
     TEST_ASSERT_TRUE(order_reaches(&order, 1.01));
 }
 
-/* The end of a line is within the tolerance of a chord that does not come near enough to the corner there. */
+/*
+ * The end of a line is within the tolerance of a chord that does not come near enough to the corner
+ * there.
+ */
 static void test_a_corner_is_not_passed_by_what_only_comes_to_its_place(void)
 {
     struct order_chord chord = {.within_mm = 0.1f, .corner_mm = 0.05f, .way = {0.93f}};
@@ -195,7 +204,10 @@ static void test_a_corner_is_not_passed_by_what_only_comes_to_its_place(void)
     TEST_ASSERT_FALSE(order_reaches(&order, 1.01));
 }
 
-/* Two fast lines with a slow one between, and one chord from before it to behind it, on them: is there a way on fast ones alone? */
+/*
+ * Two fast lines with a slow one between, and one chord from before it to behind it, on them: is
+ * there a way on fast ones alone?
+ */
 static bool hurries_past(double slow_mm)
 {
     struct order_chord chord = {
@@ -219,7 +231,10 @@ static void test_a_slow_motion_longer_than_two_tolerances_is_not_passed_in_an_in
     TEST_ASSERT_FALSE(hurries_past(0.201));
 }
 
-/* A raster finer than the tolerance has more stretches than are kept: one of those that are kept leads on. */
+/*
+ * A raster finer than the tolerance has more stretches than are kept: one of those that are kept
+ * leads on.
+ */
 static void test_of_many_stretches_enough_are_kept(void)
 {
     for (unsigned i = 0; i < 8; i++) {

@@ -1,4 +1,7 @@
-/* How fast nominal time passes along a window: never beyond the limits it began within, and as fast as they leave. */
+/*
+ * How fast nominal time passes along a window: never beyond the limits it began within, and as fast
+ * as they leave.
+ */
 #include "smooth/tempo.h"
 
 #include "base/maths.h"
@@ -72,7 +75,10 @@ static double coordinate(unsigned i)
     return window.unit_mm[0] * (double)window.x[i][0];
 }
 
-/* What the axis needs where a piece begins or ends, by the chain rule, and for a change of rate; in parts of its limits. */
+/*
+ * What the axis needs where a piece begins or ends, by the chain rule, and for a change of rate; in
+ * parts of its limits.
+ */
 struct used {
     double velocity, acceleration, jerk;
 };

@@ -73,7 +73,10 @@ static void test_a_change_is_rounded_over_the_time_that_the_acceleration_takes(v
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.02, change.rounding_s);
 }
 
-/* V r'/A of the acceleration: 6 % at least, half at most, and between what a stop over 0.7 of 256 pieces needs. */
+/*
+ * V r'/A of the acceleration: 6 % at least, half at most, and between what a stop over 0.7 of 256
+ * pieces needs.
+ */
 static void test_shorter_pieces_leave_more_for_changes_up_to_half(void)
 {
     set_machine(100.0, 250.0, 50000.0);
@@ -93,8 +96,9 @@ static double left_at(double velocity)
 }
 
 /*
- * 2.8 1/s are needed for a stop over the pieces. At the highest velocity 1.25 leave half of the acceleration: there the
- * rate changes that slowly, and where it costs no rate by twice that, which is near enough, or more.
+ * 2.8 1/s are needed for a stop over the pieces. At the highest velocity 1.25 leave half of the
+ * acceleration: there the rate changes that slowly, and where it costs no rate by twice that, which
+ * is near enough, or more.
  */
 static void test_slow_axes_leave_what_a_stop_over_short_pieces_needs(void)
 {
@@ -110,7 +114,9 @@ static void test_slow_axes_leave_what_a_stop_over_short_pieces_needs(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, change.by, change.wanted);
 }
 
-/* R^2 = x r'/(12 J), but a cycle at least and A/J = 20 ms at most; V r'/R is no more than 0.3 of J. */
+/*
+ * R^2 = x r'/(12 J), but a cycle at least and A/J = 20 ms at most; V r'/R is no more than 0.3 of J.
+ */
 static void test_on_a_short_way_changes_of_rate_are_rounded_over_less(void)
 {
     set_machine(100.0, 1000.0, 50000.0);
@@ -173,8 +179,8 @@ static void check_half_used(double velocity, double acceleration, double jerk)
 }
 
 /*
- * Where A/J is long, or the acceleration high for the velocity, a change of rate alone could need more than all of the
- * jerk. What was left for the curve was nothing then: it stood for ever.
+ * Where A/J is long, or the acceleration high for the velocity, a change of rate alone could need
+ * more than all of the jerk. What was left for the curve was nothing then: it stood for ever.
  */
 static void test_no_machine_makes_a_curve_stand_that_needs_half_its_limits(void)
 {
@@ -200,7 +206,10 @@ static void test_the_rate_is_never_nothing(void)
     }
 }
 
-/* A line of 10 mm along X, and a window of samples that stand beside it at 5 mm; the last two lie a mm off. */
+/*
+ * A line of 10 mm along X, and a window of samples that stand beside it at 5 mm; the last two lie a
+ * mm off.
+ */
 static void stand_beside_a_line(struct window *w)
 {
     static const struct move move = {.kind = MOVE_FEED, .feed_mm_s = 50.0, .tolerance_mm = 0.01};
@@ -228,7 +237,9 @@ static void stand_beside_a_line(struct window *w)
     takt_window_set(w, &route, 4, &on);
 }
 
-/* The last samples stay where they were thought to be, though those before may have come farther. */
+/*
+ * The last samples stay where they were thought to be, though those before may have come farther.
+ */
 static void test_a_piece_between_places_that_go_back_leaves_the_tolerance_by_what_it_is_off(void)
 {
     static struct window w;

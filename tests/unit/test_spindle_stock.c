@@ -24,7 +24,10 @@ static void test_the_points_of_the_grid_have_their_tops(void)
     }
 }
 
-/* At (20, 0): the mean of 2, 4, 6 and 0. At (5, -2.5): 0.75 of the mean of 1 and 2, 0.25 of that of 3 and 6. */
+/*
+ * At (20, 0): the mean of 2, 4, 6 and 0. At (5, -2.5): 0.75 of the mean of 1 and 2, 0.25 of that of
+ * 3 and 6.
+ */
 static void test_between_them_the_top_is_linear_in_x_and_in_y(void)
 {
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3, stock_depth_mm(&stock, 20, 0, 0));

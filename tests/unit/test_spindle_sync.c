@@ -1,5 +1,6 @@
 /*
- * Threads and rigid tapping against the virtual spindle: phase, limits, and what happens when it goes wrong.
+ * Threads and rigid tapping against the virtual spindle: phase, limits, and what happens when it
+ * goes wrong.
  */
 #include "support/thread_bench.h"
 
@@ -7,7 +8,10 @@
 
 #define CYCLES_MAX 200000
 
-/* A thread keeps within this of the angle at constant speed: a count of the encoder, and the filters' rest. */
+/*
+ * A thread keeps within this of the angle at constant speed: a count of the encoder, and the
+ * filters' rest.
+ */
 #define STEADY_MM 0.001
 
 static struct bench bench;
@@ -159,7 +163,10 @@ static void test_a_thread_goes_on_over_a_tangent_junction_without_a_stop(void)
     bench_check_limits(&bench);
 }
 
-/* Around a corner the axes stop; the thread behind it is the continuation of the one before, some revolutions later. */
+/*
+ * Around a corner the axes stop; the thread behind it is the continuation of the one before, some
+ * revolutions later.
+ */
 static void test_a_thread_goes_on_in_phase_behind_a_corner(void)
 {
     double first = -1.0;

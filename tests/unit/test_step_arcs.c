@@ -72,7 +72,10 @@ static double run_quarter(void)
     return farthest;
 }
 
-/* By an evaluation function an axis is off by a step and what is rounded; evenly stepped, by half a step. */
+/*
+ * By an evaluation function an axis is off by a step and what is rounded; evenly stepped, by half a
+ * step.
+ */
 static void test_a_circle_is_stepped_by_its_evaluation_function(void)
 {
     const double off = run_quarter();

@@ -83,7 +83,10 @@ static void test_axes_without_increment_are_left_out(void)
     TEST_ASSERT_EQUAL_STRING("", walk_line(EVALUATE_IMPROVED, 0, 0, 0));
 }
 
-/* R = 5 from (0, 5), F: 0, x 1, both -5, x 0, x 7 at (4, 4), y leads: y 0, y -5, both 1, y 0 at (5, 0) */
+/*
+ * R = 5 from (0, 5), F: 0, x 1, both -5, x 0, x 7 at (4, 4), y leads: y 0, y -5, both 1, y 0 at (5,
+ * 0)
+ */
 static void test_an_improved_quarter_circle_can_be_followed_by_hand(void)
 {
     struct evaluate_arc_config arc = arc_of(EVALUATE_IMPROVED, 0, 5, 5, 0, true);
@@ -106,7 +109,10 @@ static void test_counter_clockwise_exchanges_the_axes(void)
     TEST_ASSERT_EQUAL_STRING("Y -XY Y Y -X -X -XY -X", walked);
 }
 
-/* Quadrant renaming by geometry: one step from the beginning of each, clockwise and counter-clockwise. */
+/*
+ * Quadrant renaming by geometry: one step from the beginning of each, clockwise and
+ * counter-clockwise.
+ */
 static void test_every_quadrant_turns_the_right_way(void)
 {
     static const struct {
@@ -173,7 +179,10 @@ static void test_the_rate_of_a_line_is_that_of_its_ticks(void)
     TEST_ASSERT_EQUAL_DOUBLE(1.4, takt_evaluate_line_rate(&line));
 }
 
-/* f0 = V max(|I|, |J|) / (h R): from V/h on an axis to V/(sqrt 2 h) at 45 degrees; plain V (|I| + |J|) / (h R) */
+/*
+ * f0 = V max(|I|, |J|) / (h R): from V/h on an axis to V/(sqrt 2 h) at 45 degrees; plain V (|I| +
+ * |J|) / (h R)
+ */
 static void test_the_rate_of_an_arc_follows_the_angle(void)
 {
     struct evaluate_arc_config config = arc_of(EVALUATE_IMPROVED, 3, 4, -3, -4, true);
@@ -190,8 +199,9 @@ static void test_the_rate_of_an_arc_follows_the_angle(void)
 }
 
 /*
- * A straight axis in proportion to the leading coordinate instead of the angle would be off by the largest of
- * sin(p) / sin(45) - p / 45 over an octant: 4.2 % of its rise there, 42 um at 8 mm pitch.
+ * A straight axis in proportion to the leading coordinate instead of the angle would be off by the
+ * largest of sin(p) / sin(45) - p / 45 over an octant: 4.2 % of its rise there, 42 um at 8 mm
+ * pitch.
  */
 static void test_the_straight_axis_of_a_helix_follows_the_angle_and_not_the_coordinate(void)
 {
@@ -205,7 +215,10 @@ static void test_the_straight_axis_of_a_helix_follows_the_angle_and_not_the_coor
     }
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.042, largest);
 
-    /* A turn of R = 10 mm at 8 mm pitch in steps of 1 um: no lattice point is off by more than a step. */
+    /*
+     * A turn of R = 10 mm at 8 mm pitch in steps of 1 um: no lattice point is off by more than a
+     * step.
+     */
     struct evaluate_arc_config config = arc_of(EVALUATE_IMPROVED, 10000, 0, 10000, 0, false);
     const int64_t delta[AXIS_COUNT] = {0, 0, 8000};
     const unsigned plane[2] = {AXIS_X, AXIS_Y};

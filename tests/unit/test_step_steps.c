@@ -115,7 +115,10 @@ static void test_a_slow_axis_steps_evenly_too(void)
     TEST_ASSERT_EQUAL_UINT(600, pulses.count + 1);
 }
 
-/* A curve at constant feed, the given one or the little less that ends on a cycle: which is returned. */
+/*
+ * A curve at constant feed, the given one or the little less that ends on a cycle: which is
+ * returned.
+ */
 static double run_curve(const struct curve *curve, double feed_mm_s, uint32_t number)
 {
     unsigned cycles = (unsigned)takt_maths_ceil(curve->length_mm / (feed_mm_s * CYCLE_S));
@@ -169,8 +172,9 @@ static struct curve circle(double radius_mm, double rise_mm)
 }
 
 /*
- * One tick of a circle is h / max(|cos|, |sin|) of path: that over the time to the next is the path speed. The very first
- * and last ticks, and the two beside each change of the leading axis, have no such place.
+ * One tick of a circle is h / max(|cos|, |sin|) of path: that over the time to the next is the path
+ * speed. The very first and last ticks, and the two beside each change of the leading axis, have no
+ * such place.
  */
 static double worst_speed(double radius_mm, double feed_mm_s)
 {
@@ -224,7 +228,10 @@ static void test_at_a_constant_rate_path_speed_would_swing_by_root_2(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.002, maths_sqrt(2.0), highest / lowest);
 }
 
-/* Distance of the stepped position from the setpoints' straight way, each time it changes: in steps, per axis. */
+/*
+ * Distance of the stepped position from the setpoints' straight way, each time it changes: in
+ * steps, per axis.
+ */
 static double worst_off(const struct point *from, const struct point *to, const int64_t at[],
                         double part)
 {
@@ -294,7 +301,10 @@ static void test_lines_by_evaluation_functions_end_exactly_and_miss_no_step(void
     }
 }
 
-/* A chain of arcs and lines, passed at full feed: at their junctions a form has a step or two left over. */
+/*
+ * A chain of arcs and lines, passed at full feed: at their junctions a form has a step or two left
+ * over.
+ */
 static void test_no_junction_asks_a_drive_for_more_than_its_rate(void)
 {
     static const enum steps_form forms[] = {STEPS_EVEN, STEPS_IMPROVED, STEPS_PLAIN};

@@ -264,7 +264,10 @@ static void test_records_of_another_version_are_refused(void)
     expect_refusal(TAKT_ERROR_SETTINGS_SHAPE);
 }
 
-/* Random bytes behind a right checksum: refused or taken, but nothing is read or written beyond its place. */
+/*
+ * Random bytes behind a right checksum: refused or taken, but nothing is read or written beyond its
+ * place.
+ */
 static void test_garbage_with_a_right_checksum_does_no_harm(void)
 {
     make_volume(2);

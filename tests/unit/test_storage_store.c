@@ -1,6 +1,7 @@
 /*
- * Power fails at every step of storing a set, in a flash that keeps what such a step may leave: any part of a word's
- * zeros, anything in a sector being erased. Afterwards the old or the new set must be there.
+ * Power fails at every step of storing a set, in a flash that keeps what such a step may leave: any
+ * part of a word's zeros, anything in a sector being erased. Afterwards the old or the new set must
+ * be there.
  */
 #include "storage/store.h"
 #include "unity.h"
@@ -14,7 +15,10 @@
 #define HEAD_USED    20U /* the rest is blank */
 #define SET_MAX      (SECTOR_BYTES - STORE_HEAD_BYTES)
 
-/* The flash, and when its power fails: at step cut_at, counted from 0; what the step leaves is kind of cut. */
+/*
+ * The flash, and when its power fails: at step cut_at, counted from 0; what the step leaves is kind
+ * of cut.
+ */
 enum cut { CUT_BEFORE, CUT_AFTER, CUT_HALF, CUT_RANDOM, CUT_LOW_BITS, CUTS };
 
 static struct {

@@ -20,7 +20,10 @@ void tearDown(void)
 {
 }
 
-/* A spindle of this speed and acceleration at cycle k, its angle in whole counts of 1/counts; 0: exact. */
+/*
+ * A spindle of this speed and acceleration at cycle k, its angle in whole counts of 1/counts; 0:
+ * exact.
+ */
 static double rev_at(double k, double speed, double acceleration, double counts)
 {
     const double rev = 7.0 + k * (speed + 0.5 * k * acceleration);

@@ -91,7 +91,10 @@ static void test_a_target_faster_than_the_velocity_is_followed_at_the_velocity(v
     check_limits();
 }
 
-/* Speeds that come to the end in every phase of a cycle, on the way up, at speed and on the way down. */
+/*
+ * Speeds that come to the end in every phase of a cycle, on the way up, at speed and on the way
+ * down.
+ */
 static void test_an_end_is_come_to_rest_on_exactly(void)
 {
     for (int n = 0; n < 400; n++) {

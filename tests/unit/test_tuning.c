@@ -33,7 +33,8 @@ static double torque_at(double t)
 }
 
 /*
- * x'' = h/J (M(t - D) - g - c sign x') - b/J x' in steps so fine that they do not show: v goes by exp over each, which has one torque.
+ * x'' = h/J (M(t - D) - g - c sign x') - b/J x' in steps so fine that they do not show: v goes by
+ * exp over each, which has one torque.
  */
 static void make(double inertia, double viscous, double dry, double weight, double delay_s)
 {
@@ -83,7 +84,10 @@ static void test_friction_and_weight_are_told_apart(void)
     expect(1e-3, 5e-3, 0.06, 0.02, 1.7e-3);
 }
 
-/* Readings in steps of a thirtieth of the way: the deviation that is told is not smaller than what it is off by, times three. */
+/*
+ * Readings in steps of a thirtieth of the way: the deviation that is told is not smaller than what
+ * it is off by, times three.
+ */
 static void test_readings_in_steps_are_less_sure_and_say_so(void)
 {
     make(1e-3, 0, 0, 0, 1e-3);
@@ -111,7 +115,10 @@ static void test_what_is_no_answer_to_the_torque_is_refused(void)
 static const struct tuning_drive drive = {
     .step_s = 250e-6, .torque_rated_nm = 1.27, .bandwidth_max_hz = 1e6};
 
-/* P alone on an inertia: L = Kp e^(-sT)/s has the margin 90 degrees - Kp T; Kv << Kp leaves 90 degrees of it, but for Kv (1/Kp + T). */
+/*
+ * P alone on an inertia: L = Kp e^(-sT)/s has the margin 90 degrees - Kp T; Kv << Kp leaves 90
+ * degrees of it, but for Kv (1/Kp + T).
+ */
 static void test_margins_are_those_of_the_closed_form(void)
 {
     const struct tuning_plant bare = {
@@ -127,7 +134,10 @@ static void test_margins_are_those_of_the_closed_form(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, margins.overshoot);
 }
 
-/* Fast loops and P alone: x'' = Kp (Kv (1 - x) - x'), damping d = sqrt(Kp / Kv) / 2: it overshoots by exp(-pi d / sqrt(1 - d^2)). */
+/*
+ * Fast loops and P alone: x'' = Kp (Kv (1 - x) - x'), damping d = sqrt(Kp / Kv) / 2: it overshoots
+ * by exp(-pi d / sqrt(1 - d^2)).
+ */
 static void test_the_model_overshoots_as_an_oscillator_of_second_order(void)
 {
     const struct tuning_plant bare = {
@@ -158,7 +168,10 @@ static void test_gains_that_are_unstable_are_seen(void)
     TEST_ASSERT_FALSE(tuning_margins_are_good(&margins));
 }
 
-/* Over inertias, delays and frictions: what is found keeps what is promised, and is the faster the less late the torque is. */
+/*
+ * Over inertias, delays and frictions: what is found keeps what is promised, and is the faster the
+ * less late the torque is.
+ */
 static void test_gains_that_are_found_keep_the_promise(void)
 {
     static const double delays_s[] = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3};

@@ -60,7 +60,10 @@ static void begin(const char *program)
     begin_as(program, false);
 }
 
-/* A cycle of a block at x, y, as an ideal drive would do it: reporting each setpoint when it is due. */
+/*
+ * A cycle of a block at x, y, as an ideal drive would do it: reporting each setpoint when it is
+ * due.
+ */
 static void cycle(uint32_t block, double x, double y)
 {
     static struct point due[DRIVES_LATENCY_CYCLES];

@@ -1,6 +1,6 @@
 /*
- * How far the verifier finds points from involutes, and their chords: against points moved aside by a known distance, and
- * against the largest distance of many points of the curve from the chord.
+ * How far the verifier finds points from involutes, and their chords: against points moved aside by
+ * a known distance, and against the largest distance of many points of the curve from the chord.
  */
 #include "base/maths.h"
 #include "verifier/verifier_curve.h"

@@ -1,6 +1,6 @@
 /*
- * The verifier of paths within a tolerance, against setpoints made by hand: it must follow what is right, and see what is
- * wrong.
+ * The verifier of paths within a tolerance, against setpoints made by hand: it must follow what is
+ * right, and see what is wrong.
  */
 #include "tube_bench.h"
 
@@ -192,7 +192,10 @@ static void test_an_arc_is_measured_by_its_curve_and_not_by_chords(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10 * PI, verifier.figures.path_length_mm);
 }
 
-/* On a circle of 0.105 in place of 0.2, 1.2 rad from each other: their lines come to 0.105 cos 0.6 = 0.2 - 0.113. */
+/*
+ * On a circle of 0.105 in place of 0.2, 1.2 rad from each other: their lines come to 0.105 cos 0.6
+ * = 0.2 - 0.113.
+ */
 static void test_between_setpoints_of_a_bend_the_axes_do_not_go_straight(void)
 {
     begin("G64 P0.1\nF100\nG3 I-0.2 P3\nG1 Y-5\n");

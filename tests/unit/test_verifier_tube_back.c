@@ -28,7 +28,10 @@ static void test_strokes_shorter_than_the_tolerance_may_be_left_out(void)
     finish_within(0, 0);
 }
 
-/* From 1 back by some tolerances, then on: a straight line passes both ends, but never the second after the first. */
+/*
+ * From 1 back by some tolerances, then on: a straight line passes both ends, but never the second
+ * after the first.
+ */
 static void pass_stroke(double tolerances, double made)
 {
     (void)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\nG1 X1\nG1 X%.6f\nG1 X2\n",
@@ -40,7 +43,10 @@ static void pass_stroke(double tolerances, double made)
     tube_verifier_finish(&verifier);
 }
 
-/* Whoever has not gone back is half of the stroke off at best: in its middle when the path is at its ends. */
+/*
+ * Whoever has not gone back is half of the stroke off at best: in its middle when the path is at
+ * its ends.
+ */
 static void test_a_stroke_back_may_be_left_out_up_to_two_tolerances(void)
 {
     pass_stroke(1.95, 0);

@@ -1,5 +1,6 @@
 /*
- * firmware/vfd/vfd.h against the registers of the virtual spindle: the line in between is the test's.
+ * firmware/vfd/vfd.h against the registers of the virtual spindle: the line in between is the
+ * test's.
  */
 #include "base/maths.h"
 #include "spindle/vfd_registers.h"

@@ -162,7 +162,10 @@ static void set_table(unsigned along, double from_mm, double to_mm, double from,
     }
 }
 
-/* The foot of X rings at places of Z: each with the frequency that the table has there, beyond its ends that of the end. */
+/*
+ * The foot of X rings at places of Z: each with the frequency that the table has there, beyond its
+ * ends that of the end.
+ */
 static void test_a_mode_has_the_frequency_of_where_the_other_axis_stands(void)
 {
     static const double places[][2] = {{-500, 0.5}, {0, 0.5}, {50, 0.75},
@@ -186,7 +189,10 @@ static void test_a_mode_has_the_frequency_of_where_the_other_axis_stands(void)
     }
 }
 
-/* Where Z jumps, away and its rate go on: A cos(w1 t) before, and from its crest A cos(w2 t) behind. */
+/*
+ * Where Z jumps, away and its rate go on: A cos(w1 t) before, and from its crest A cos(w2 t)
+ * behind.
+ */
 static void test_where_the_frequency_changes_the_swing_goes_on(void)
 {
     const double w1 = 2 * MATHS_PI * 25, w2 = 2 * MATHS_PI * 50;
@@ -208,8 +214,8 @@ static void test_where_the_frequency_changes_the_swing_goes_on(void)
 }
 
 /*
- * A frequency that changes slowly: energy over frequency stays, so the amplitude goes as 1/sqrt(w) (Landau and Lifshitz,
- * Mechanics, 49), here to a quarter.
+ * A frequency that changes slowly: energy over frequency stays, so the amplitude goes as 1/sqrt(w)
+ * (Landau and Lifshitz, Mechanics, 49), here to a quarter.
  */
 static void test_over_a_slow_change_the_amplitude_goes_as_one_over_the_root(void)
 {
@@ -304,7 +310,10 @@ static void test_what_is_behind_along_the_way_does_not_count(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, tool_way_rms_mm(&way));
 }
 
-/* Along X, then along Y: the tool that is late is measured from where it is, not from what lies near. */
+/*
+ * Along X, then along Y: the tool that is late is measured from where it is, not from what lies
+ * near.
+ */
 static void test_a_corner_is_measured_from_both_of_its_sides(void)
 {
     for (int k = 0; k <= 20; k++)

@@ -1,6 +1,6 @@
 /*
- * What the C library of WebAssembly leaves out of POSIX and the desk's rooms call: one thread, no signals, files that lie in
- * memory. Included before every source (toolchain.cmake).
+ * What the C library of WebAssembly leaves out of POSIX and the desk's rooms call: one thread, no
+ * signals, files that lie in memory. Included before every source (toolchain.cmake).
  */
 #ifndef TAKT_WASM_POSIX_H
 #define TAKT_WASM_POSIX_H

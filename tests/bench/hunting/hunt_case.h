@@ -1,5 +1,6 @@
 /*
- * What the second verifier verifies: a programmed path, cut into straight pieces, and the setpoints of a trace.
+ * What the second verifier verifies: a programmed path, cut into straight pieces, and the setpoints
+ * of a trace.
  *
  * Lengths are over all axes, in mm, a radian counts as one.
  */
@@ -13,7 +14,10 @@
 
 #define AXES_MAX 6
 
-/* In exact paths the order is verified with so much room; distances from the curve are told to 1e-9 mm. */
+/*
+ * In exact paths the order is verified with so much room; distances from the curve are told to 1e-9
+ * mm.
+ */
 #define ORDER_MM 1e-7
 
 /* What rounding to the trace's nine decimals puts off one axis. */

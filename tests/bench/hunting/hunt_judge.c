@@ -1,22 +1,26 @@
 /*
- * A second verifier of setpoints, for `hunt`: it shares no code with the controller or with takt's own verifier.
+ * A second verifier of setpoints, for `hunt`: it shares no code with the controller or with takt's
+ * own verifier.
  *
  *     hunt_judge CASE TRACE.csv [WORK]        CASE: written by hunt, see read_case; -: standard input
  *
- * The programmed path is cut into straight pieces, the setpoints are the corners of a polyline that begins where the
- * program starts. Is there a way to walk along both, never backwards, with no more than the tolerance between them? Where
- * the polyline's corner k is beside piece j, the places of the piece that can be come to are one interval, and so are
- * those of step k beside the end of piece j (Alt and Godau, Computing the Frechet distance between two polygonal curves,
- * 1995). So one pass over the steps decides, exactly.
+ * The programmed path is cut into straight pieces, the setpoints are the corners of a polyline that
+ * begins where the program starts. Is there a way to walk along both, never backwards, with no more
+ * than the tolerance between them? Where the polyline's corner k is beside piece j, the places of
+ * the piece that can be come to are one interval, and so are those of step k beside the end of
+ * piece j (Alt and Godau, Computing the Frechet distance between two polygonal curves, 1995). So
+ * one pass over the steps decides, exactly.
  *
- * Tolerance of a place: P of its motion, or ORDER_MM where it must be exact (how exact is measured apart, from the true
- * curve), and what a piece is off its arc. Between two setpoints the axes do not go straight: with second differences d a
- * curve is off its chord by d / 8, a junction passed in an exact path by half a step at most; ends of motions may be off a step by
- * that.
+ * Tolerance of a place: P of its motion, or ORDER_MM where it must be exact (how exact is measured
+ * apart, from the true curve), and what a piece is off its arc. Between two setpoints the axes do
+ * not go straight: with second differences d a curve is off its chord by d / 8, a junction passed
+ * in an exact path by half a step at most; ends of motions may be off a step by that.
  *
- * What takes more than so much WORK (pieces looked at beside a step) is not verified, and told: unjudged.
+ * What takes more than so much WORK (pieces looked at beside a step) is not verified, and told:
+ * unjudged.
  *
- * Lengths are over all axes, in mm, a radian counts as one. Figures are printed, a line each: NAME VALUE [PLACE].
+ * Lengths are over all axes, in mm, a radian counts as one. Figures are printed, a line each: NAME
+ * VALUE [PLACE].
  */
 #include "hunt_walk.h"
 
@@ -30,7 +34,9 @@
 /* The tolerance may be exceeded by this for rounding. */
 #define TOLERANCE_ROOM 1e-6
 
-/* Largest of v, a, j by differences as parts of the limits, less what rounding of the trace can do. */
+/*
+ * Largest of v, a, j by differences as parts of the limits, less what rounding of the trace can do.
+ */
 static void verify_limits(const struct verifier *j)
 {
     static const char *const names[] = {"velocity", "acceleration", "jerk"};
@@ -78,7 +84,10 @@ static double segment_distance(unsigned axes, const double *start, const double 
     return sqrt(square);
 }
 
-/* Most that a setpoint is off all of the path, whatever the order, as a part of the tolerance of the nearest piece. */
+/*
+ * Most that a setpoint is off all of the path, whatever the order, as a part of the tolerance of
+ * the nearest piece.
+ */
 static void verify_tube(struct verifier *j)
 {
     double worst = 0;

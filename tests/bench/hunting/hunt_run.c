@@ -1,11 +1,12 @@
 /*
- * `takt run` with an operator's hands on single block and feed hold, for `hunt`: the library's run, cycle by cycle.
+ * `takt run` with an operator's hands on single block and feed hold, for `hunt`: the library's run,
+ * cycle by cycle.
  *
  *     hunt_run HANDS TRACE.csv SUMMARY.json run PROGRAM [options of takt run]
  *
- * HANDS: lines of CYCLE SINGLE HOLD END: from this cycle of the program on, single block and feed hold are on (1) or off (0);
- * 1: the run is ended, as by Ctrl-C, and the axes come to rest on the path.
- * The status is that of the run.
+ * HANDS: lines of CYCLE SINGLE HOLD END: from this cycle of the program on, single block and feed
+ * hold are on (1) or off (0); 1: the run is ended, as by Ctrl-C, and the axes come to rest on the
+ * path. The status is that of the run.
  */
 #include "library/library.h"
 

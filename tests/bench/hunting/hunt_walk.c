@@ -11,13 +11,19 @@ static const size_t windows[] = {1, 16, 256};
 /* Setpoints that are the same so often are a stop. */
 #define STANDING_CYCLES 3
 
-/* A stop is not asked for where the path bends by less than this, cosine of the angle: 20 degrees, and a kink. */
+/*
+ * A stop is not asked for where the path bends by less than this, cosine of the angle: 20 degrees,
+ * and a kink.
+ */
 #define SMOOTH_COSINE 0.94
 #define EXACT_COSINE  (1 - 1e-8)
 
 static const struct span nowhere = {2, -1};
 
-/* The parts f of a segment with |p - start - f way| <= within: |f - g| <= sqrt((within^2 - d^2) / way^2). */
+/*
+ * The parts f of a segment with |p - start - f way| <= within: |f - g| <= sqrt((within^2 - d^2) /
+ * way^2).
+ */
 static struct span near(unsigned axes, const double *start, const double *way, double square_mm2,
                         const double *p, double within_mm)
 {
@@ -60,9 +66,10 @@ static double beside_step(const struct verifier *j, size_t k)
 }
 
 /*
- * How far the end of a piece may be from step k (from row k - 1 to row k). On an exact path it is gone through on the way from
- * one setpoint to the next: half of that way from the nearer one at most. As long as that are the steps beside it; or there, where
- * one junction alone is passed, differ so much.
+ * How far the end of a piece may be from step k (from row k - 1 to row k). On an exact path it is
+ * gone through on the way from one setpoint to the next: half of that way from the nearer one at
+ * most. As long as that are the steps beside it; or there, where one junction alone is passed,
+ * differ so much.
  */
 static double end_within(const struct verifier *j, size_t piece, size_t k, double factor)
 {
@@ -174,7 +181,10 @@ static double time_at(const struct verifier *j, size_t piece, double part, const
     return before[p->motion] + j->motion[p->motion].time_s * (p->from + part * (p->to - p->from));
 }
 
-/* Faster than programmed? In exact path by the time that the way would have taken: what a tolerance cuts off is no haste. */
+/*
+ * Faster than programmed? In exact path by the time that the way would have taken: what a tolerance
+ * cuts off is no haste.
+ */
 static void verify_exact_feed(const struct verifier *j, struct walk *w, size_t k, unsigned line)
 {
     for (size_t i = 0; i < WINDOWS; i++) {
@@ -188,9 +198,10 @@ static void verify_exact_feed(const struct verifier *j, struct walk *w, size_t k
 }
 
 /*
- * Within a tolerance by the step's length, where all motions it may belong to are of one kind: over the axes that a feed of that
- * kind counts, X Y Z, or A B C of motions of those alone, as time_s does. What rounding moves the others by, on the way to a
- * motion of theirs, is bounded by the tolerance, and is no part of F.
+ * Within a tolerance by the step's length, where all motions it may belong to are of one kind: over
+ * the axes that a feed of that kind counts, X Y Z, or A B C of motions of those alone, as time_s
+ * does. What rounding moves the others by, on the way to a motion of theirs, is bounded by the
+ * tolerance, and is no part of F.
  */
 static void verify_feed(const struct verifier *j, struct walk *w, size_t k)
 {
@@ -244,8 +255,9 @@ static double turn_between(const struct verifier *j, size_t from, size_t to)
 }
 
 /*
- * Backwards against every piece that it may be on. A curve in order may do so by 2 P: from P before a place of the path to P
- * behind it. In all, with setpoints x_k = p_k + e_k, |e_k| <= P, beside places p_k that only go on, and the tangents t_k there,
+ * Backwards against every piece that it may be on. A curve in order may do so by 2 P: from P before
+ * a place of the path to P behind it. In all, with setpoints x_k = p_k + e_k, |e_k| <= P, beside
+ * places p_k that only go on, and the tangents t_k there,
  *
  *     sum (x_k+1 - x_k) t_k >= sum (e_k+1 - e_k) t_k = e_n t_n-1 - e_0 t_0 - sum e_k (t_k - t_k-1) >= -P (2 + sum |t_k - t_k-1|)
  *

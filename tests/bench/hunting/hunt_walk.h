@@ -28,9 +28,14 @@ struct walk {
     double *time_s[2]; /* along the programmed path, first and last place of each of them */
 };
 
-/* One pass with this factor on all tolerances. closely: measures what the places passed say, too. */
+/*
+ * One pass with this factor on all tolerances. closely: measures what the places passed say, too.
+ */
 struct walk walk_along(struct verifier *j, double factor, bool closely, const double *before);
-/* Smallest factor on all tolerances with which there is a way; to 0.1 %. Where that is too much work: one that it exceeds. */
+/*
+ * Smallest factor on all tolerances with which there is a way; to 0.1 %. Where that is too much
+ * work: one that it exceeds.
+ */
 double least_factor(struct verifier *j);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * libFuzzer on the reader that TAKT_FUZZ_READER names; without, all names. One program for all: tests/campaign keeps a
- * corpus of each.
+ * libFuzzer on the reader that TAKT_FUZZ_READER names; without, all names. One program for all:
+ * tests/campaign keeps a corpus of each.
  */
 #include "readers.h"
 

@@ -1,4 +1,7 @@
-/* What comes over lines and buses: texts of adapters and logs, and frames for drives and for their master. */
+/*
+ * What comes over lines and buses: texts of adapters and logs, and frames for drives and for their
+ * master.
+ */
 #include "readers.h"
 
 #include "bus/candump_read.h"
@@ -58,8 +61,8 @@ void read_candump(const uint8_t *data, size_t size)
 }
 
 /*
- * The input as frames: identifier (2 bytes, with the cycles before it in the upper bits), length (the highest bit: a remote
- * frame), data.
+ * The input as frames: identifier (2 bytes, with the cycles before it in the upper bits), length
+ * (the highest bit: a remote frame), data.
  */
 struct frames {
     const uint8_t *data;
@@ -150,7 +153,10 @@ static bool receive_next(void *context, struct can_frame *frame)
     return true;
 }
 
-/* Anything from the drives, for the master: it goes from start over operation to a fault, and never back. */
+/*
+ * Anything from the drives, for the master: it goes from start over operation to a fault, and never
+ * back.
+ */
 void read_frames_of_drives(const uint8_t *data, size_t size)
 {
     static struct drives drives;

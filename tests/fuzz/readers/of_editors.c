@@ -34,7 +34,8 @@ static void require_text(void *context, const char *json)
 }
 
 /*
- * The bytes as they come; then as a program that the editor has open, with a question about every place of its first lines.
+ * The bytes as they come; then as a program that the editor has open, with a question about every
+ * place of its first lines.
  */
 static void hear_bytes(const struct options *options, const uint8_t *data, size_t size)
 {

@@ -1,4 +1,7 @@
-/* Part programs of every dialect: any bytes are translated, read to moves, and written for another controller. */
+/*
+ * Part programs of every dialect: any bytes are translated, read to moves, and written for another
+ * controller.
+ */
 #define _POSIX_C_SOURCE 200809L
 
 #include "readers.h"

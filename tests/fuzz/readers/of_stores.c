@@ -1,6 +1,7 @@
 /*
- * What is stored: compiled programs, settings, flash, the state of a service. Where a checksum keeps damage out, it is
- * made right here, so that what comes behind it is reached: by the lowest bit of the first byte.
+ * What is stored: compiled programs, settings, flash, the state of a service. Where a checksum
+ * keeps damage out, it is made right here, so that what comes behind it is reached: by the lowest
+ * bit of the first byte.
  */
 #define _POSIX_C_SOURCE 200809L /* open_memstream */
 
@@ -171,7 +172,9 @@ static bool send_nowhere(void *context, const struct can_frame *frame)
     return true;
 }
 
-/* A concise configuration that is good lies within its bytes, and has as many entries as it says. */
+/*
+ * A concise configuration that is good lies within its bytes, and has as many entries as it says.
+ */
 void read_configuration(const uint8_t *data, size_t size)
 {
     const struct concise_dcf dcf = {.bytes = data, .length = (uint32_t)size};
@@ -190,7 +193,9 @@ void read_configuration(const uint8_t *data, size_t size)
             count == (size_t)(data[0] | data[1] << 8 | data[2] << 16) + ((size_t)data[3] << 24));
 }
 
-/* What a virtual drive has on its disk. One that takes it boots, and what it stores is taken again. */
+/*
+ * What a virtual drive has on its disk. One that takes it boots, and what it stores is taken again.
+ */
 void read_drive_store(const uint8_t *data, size_t size)
 {
     static struct virtual_drive drive, again;

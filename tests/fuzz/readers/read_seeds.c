@@ -1,5 +1,6 @@
 /*
- * read_seeds FOLDER: every file of FOLDER/NAME, for the reader NAME. What fuzzing has found stays tried without a fuzzer.
+ * read_seeds FOLDER: every file of FOLDER/NAME, for the reader NAME. What fuzzing has found stays
+ * tried without a fuzzer.
  */
 #include "readers.h"
 

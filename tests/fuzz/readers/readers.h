@@ -1,6 +1,6 @@
 /*
- * What a reader of foreign bytes is to the fuzzer. Each is one function: any bytes may come, nothing may crash, hang or
- * leak. What a reader promises beyond that is required where it is read.
+ * What a reader of foreign bytes is to the fuzzer. Each is one function: any bytes may come,
+ * nothing may crash, hang or leak. What a reader promises beyond that is required where it is read.
  */
 #ifndef TAKT_TESTS_READERS_H
 #define TAKT_TESTS_READERS_H

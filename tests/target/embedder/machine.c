@@ -1,6 +1,6 @@
 /*
- * Somebody else's image, with takt inside: a machine without drives on its bus. It says what takt logs, until takt finds
- * that the first drive is missing.
+ * Somebody else's image, with takt inside: a machine without drives on its bus. It says what takt
+ * logs, until takt finds that the first drive is missing.
  */
 #include <takt.h>
 

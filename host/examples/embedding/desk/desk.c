@@ -1,6 +1,6 @@
 /*
- * takt in a program of your own, with your own hardware behind it: here three step motors that only count. It runs a part
- * program and says where the motors have come to stand.
+ * takt in a program of your own, with your own hardware behind it: here three step motors that only
+ * count. It runs a part program and says where the motors have come to stand.
  *
  *     text -> controller -> pulses of each cycle -> count_pulse
  */

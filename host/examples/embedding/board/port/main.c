@@ -1,6 +1,7 @@
 /*
- * A board of your own: a timer for the control cycle, a serial line for the log, pulses for step drives. What your board does
- * otherwise stands in the functions of `the board`; port/embedded.h says what each of them is to do.
+ * A board of your own: a timer for the control cycle, a serial line for the log, pulses for step
+ * drives. What your board does otherwise stands in the functions of `the board`; port/embedded.h
+ * says what each of them is to do.
  *
  *     SysTick -> takt_embedded_cycle -> pulse          main -> takt_embedded_background -> write_log
  */
