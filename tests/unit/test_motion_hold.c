@@ -123,6 +123,27 @@ static void test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself(void)
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
+/* That is one piece of another length than those of the curve, by which a hold counts. */
+static void test_no_hold_begins_where_the_axes_stand_before_the_curve(void)
+{
+    unsigned moments = 0;
+
+    for (unsigned held = 1; held < 100; held++) {
+        setUp();
+        run(held);
+        const bool moves = motion.feed > 0.0 || motion.reference.feed > 0.0;
+
+        asked.hold = true;
+        run(1);
+        if (path.first > 0) {
+            break;
+        }
+        moments += moves ? 1 : 0;
+        TEST_ASSERT_FALSE(motion.holds);
+    }
+    TEST_ASSERT_TRUE(moments > 0);
+}
+
 /*
  * Only blocks from the first on that is not known to be fast enough are asked about: none is
  * forgotten when they are many.
@@ -150,6 +171,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_hold_from_any_moment_takes_hardly_longer_than_its_ramp);
     RUN_TEST(test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself);
+    RUN_TEST(test_no_hold_begins_where_the_axes_stand_before_the_curve);
     RUN_TEST(test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_that_brakes);
     return UNITY_END();
 }
