@@ -67,9 +67,9 @@ double takt_bounds_rotation_along_mm(double radius_mm, double angle_rad, double 
 }
 
 /*
- * A step makes the radius longer by sqrt(1 + dphi^4 / 4), so N steps by (1 + dphi^4 / 4)^(N/2) <=
- * e^g, g = N dphi^4 / 8. R (e^g - 1) = R g (1 + g/2 + g^2/6 + ...), below R g (1 + g) for g <= 1.
- * The page's R g, pi R dphi^3 / 4 a turn, is the first term.
+ * A step makes the radius longer by sqrt(1 + dphi^4 / 4), so N steps by
+ * (1 + dphi^4 / 4)^(N/2) <= e^g, g = N dphi^4 / 8. R (e^g - 1) = R g (1 + g/2 + g^2/6 + ...), below
+ * R g (1 + g) for g <= 1. The page's R g, pi R dphi^3 / 4 a turn, is the first term.
  */
 double takt_bounds_rotation_growth_mm(double radius_mm, double angle_rad, double sweep_rad)
 {

@@ -39,8 +39,8 @@ double takt_bounds_ramp_cycles(double speed_mm_s, double acceleration_mm_s2, dou
 double takt_bounds_truncation_ulp(const struct bounds_cycles *n);
 
 /*
- * Bits behind the increment that keep a loss of ulps below one increment: the smallest k with ulp <
- * 2^k.
+ * Bits behind the increment that keep a loss of ulps below one increment: the smallest k with
+ * ulp < 2^k.
  */
 unsigned takt_bounds_fraction_bits(double ulp);
 

@@ -22,9 +22,9 @@ size_t takt_decimal_read(const char *text, size_t length, double *value);
 /*
  * Writes value with a fixed number of places (0 to 9), rounded half away from zero, sign only when
  * negative and not rounded to zero ("-0.000" never appears). The double is rounded once, by its
- * exact decimal value. Not a number and infinities are written as "nan", "inf", "-inf"; |value| >=
- * 1e9 as "1.250e12" with the same number of places, good to 14 digits. Returns the number of
- * characters; no terminating zero. text must have room for DECIMAL_TEXT_MAX characters.
+ * exact decimal value. Not a number and infinities are written as "nan", "inf", "-inf";
+ * |value| >= 1e9 as "1.250e12" with the same number of places, good to 14 digits. Returns the
+ * number of characters; no terminating zero. text must have room for DECIMAL_TEXT_MAX characters.
  */
 size_t takt_decimal_write(char *text, double value, unsigned places);
 

@@ -298,8 +298,8 @@ static double inverse_cbrt_1_to_2(double f)
 
 /*
  * Cube root of 1 <= m < 8, given y = m^(-1/3) to 2^-33. With t = the leading half of m y^2 and the
- * exact rest m - t^3 = 3 root^2 e - 3 root e^2 + ..., e = root - t: root = t + d + d^2 y + ..., d =
- * (m - t^3) y^2 / 3.
+ * exact rest m - t^3 = 3 root^2 e - 3 root e^2 + ..., e = root - t: root = t + d + d^2 y + ...,
+ * d = (m - t^3) y^2 / 3.
  */
 static double cbrt_1_to_8(double m, double y)
 {

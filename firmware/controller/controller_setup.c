@@ -5,6 +5,7 @@
 #include "controller/controller.h"
 
 #include "base/assert.h"
+
 #include <string.h>
 
 void takt_controller_plan_limits(const struct machine *machine, struct plan_limits *limits)

@@ -1,6 +1,7 @@
 #include "controller/controller_steps.h"
 
 #include "base/assert.h"
+
 #include <string.h>
 
 static void set_config(struct steps_config *config, const struct machine *machine)

@@ -139,8 +139,8 @@ static void sort(unsigned *a, unsigned *b)
 }
 
 /*
- * Index of a <= b <= c, inputs or GRID_NO_INPUT, each number once: a + b (b + 1) / 2 + c (c + 1) (c
- * + 2) / 6.
+ * Index of a <= b <= c, inputs or GRID_NO_INPUT, each number once: a + b (b + 1) / 2 + c (c + 1)
+ * (c + 2) / 6.
  */
 static unsigned index_of(unsigned a, unsigned b, unsigned c)
 {

@@ -85,8 +85,8 @@ unsigned takt_grid_patch_add(const struct grid *grid, struct grid_patches *patch
 float takt_grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s);
 
 /*
- * So much more than that of the spline the slope of a patch may be, mm per step: 3 error /
- * distance.
+ * So much more than that of the spline the slope of a patch may be, mm per step: 3
+ * error / distance.
  */
 static inline float grid_patch_slope(const struct grid *grid)
 {

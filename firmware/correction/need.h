@@ -47,8 +47,8 @@ struct need_jet takt_need_jet_wave(double size, double times, const struct motio
                                    unsigned axis);
 
 /*
- * Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1 a2
- * + 3 r2 a1 + r3 a.
+ * Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1
+ * a2 + 3 r2 a1 + r3 a.
  */
 void takt_need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
                            const struct need_jet *a);

@@ -25,9 +25,9 @@ bool takt_table_read_text(const char *text, size_t length, const struct table_ru
 
 /*
  * Reads an axis table in the form of LinuxCNC's COMP_FILE: lines of "nominal forward reverse", for
- * the correction of axis itself. type: 0: the actual positions when moving up and down (nominal -
- * actual is corrected); 1: corrections to be added to the motor's position. unit_mm: mm (or rad)
- * per unit of the file. Comments and checks as above.
+ * the correction of axis itself. type: 0: the actual positions when moving up and down
+ * (nominal - actual is corrected); 1: corrections to be added to the motor's position. unit_mm: mm
+ * (or rad) per unit of the file. Comments and checks as above.
  */
 bool takt_table_read_triplets(const char *text, size_t length, enum axis axis, unsigned type,
                               double unit_mm, const struct table_rules *rules, struct table *table,

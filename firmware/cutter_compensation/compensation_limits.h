@@ -1,7 +1,7 @@
 /*
  * Every fixed size of the compensation, the same in all builds: what a contour comes to depends on
- * them. struct cutter_compensation takes about COMPENSATION_ITEMS_MAX * 80 + COMPENSATION_WAYS_MAX
- * * 152 bytes.
+ * them. struct cutter_compensation takes about
+ * COMPENSATION_ITEMS_MAX * 80 + COMPENSATION_WAYS_MAX * 152 bytes.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_LIMITS_H
 #define TAKT_CUTTER_COMPENSATION_LIMITS_H

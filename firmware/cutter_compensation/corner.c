@@ -5,8 +5,8 @@
  *     angle = atan2(t x u, t . u)       > 0: the path turns left, so with d > 0 this is an inner corner
  *
  * Around an outer corner the tool's centre goes from V + d n(t) to V + d n(u), n the normal to the
- * left, on a circle about V, or along tangents to this circle: then the tips stand off by d /
- * cos(angle / 2 k), k = 1, or 2 for turns of more than 90 degrees.
+ * left, on a circle about V, or along tangents to this circle: then the tips stand off by
+ * d / cos(angle / 2 k), k = 1, or 2 for turns of more than 90 degrees.
  */
 #include "cutter_compensation/corner.h"
 

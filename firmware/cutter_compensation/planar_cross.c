@@ -2,8 +2,8 @@
  * Crossings of lines and circles.
  *
  * Line p + s t (|t| = 1) and line q + r u:     s = ((q - p) x u) / (t x u) Line and circle (c, R):
- * foot f = p + ((c - p) . t) t,  points f +- sqrt(R^2 - |c - f|^2) t Circles (c, R) and (d, S), D =
- * |d - c|:      along = (D^2 + R^2 - S^2) / (2 D) from c towards d,
+ * foot f = p + ((c - p) . t) t,  points f +- sqrt(R^2 - |c - f|^2) t Circles (c, R) and (d, S),
+ * D = |d - c|:      along = (D^2 + R^2 - S^2) / (2 D) from c towards d,
  *                                              across = +- sqrt(R^2 - along^2)
  */
 #include "base/assert.h"

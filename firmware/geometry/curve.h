@@ -76,8 +76,8 @@ struct curve_quintic {
 };
 
 /*
- * How a piece of a spline runs between its ends: direction and curvature at both, counter-clockwise
- * > 0.
+ * How a piece of a spline runs between its ends: direction and curvature at both,
+ * counter-clockwise > 0.
  */
 struct curve_course {
     double heading_rad[2];

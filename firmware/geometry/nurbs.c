@@ -130,8 +130,8 @@ static void cut(const struct nurbs *n, double from, double to, struct part *part
 }
 
 /*
- * By de Casteljau: the last three rows are value and differences. Of x = X / W: x' = (X' - W' x) /
- * W and so on.
+ * By de Casteljau: the last three rows are value and differences. Of x = X / W: x' = (X' - W'
+ * x) / W and so on.
  */
 static void look(const struct part *part, double v, struct place *p)
 {

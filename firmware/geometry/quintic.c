@@ -1,7 +1,7 @@
 /*
  * A polynomial of fifth degree in its arc length that has place, direction and curvature of a curve
- * in a plane at both ends. With u = s / L, D = end - start, T = (cos heading, sin heading), K =
- * curvature (-sin heading, cos heading):
+ * in a plane at both ends. With u = s / L, D = end - start, T = (cos heading, sin heading),
+ * K = curvature (-sin heading, cos heading):
  *
  *     x(s) = start + c1 u + c2 u^2 + c3 u^3 + c4 u^4 + c5 u^5,     c1 = D - c2 - c3 - c4 - c5
  *     c2 = L^2 K0 / 2

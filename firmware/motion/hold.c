@@ -12,9 +12,10 @@
  * down not at all. Each cycle takes the hardest w, of a few, after which there is still a way on
  * with both kept all along it, and goes along that way if there is none. There are two such ways:
  *
- *     to rest        the change goes by -e to -c, is kept, and goes by e to 0 as the rate does, from r = c^2/2e on
- *     to reference.h      the change goes by e to 0. At a constant rate that is not above that of the pieces everything is
- *                    kept, and the trapezoidal reference can take over: its own condition for what lies ahead is asked for there
+ *     to rest        the change goes by -e to -c, and by e to 0 as the rate does: r = (c^2 - q^2/2)/e
+ *     taken over     the change goes by e to 0. At a constant rate that is not above that of the
+ *                    pieces everything is kept, and the trapezoidal reference can take over: its own
+ *                    condition for what lies ahead is asked for there
  *
  * The first needs the pieces as far as the setpoint comes, the second few of them, and is all that
  * a start has. So whatever follows, the way that was found last can be gone on with, by which no
@@ -39,13 +40,6 @@
 
 /* Parts that the ease is looked at in. */
 #define EASE_PARTS 4
-
-/*
- * Parts in which a change that is kept is looked at; and what is kept of the hardest at the place
- * where it is found.
- */
-#define KEEP_PARTS 3
-#define KEPT_PART  0.85f
 
 /* The eases tried, in parts of the hardest, beside the one that is known. */
 #define EASES 3
@@ -208,38 +202,18 @@ static float least_ease(const struct hold_trial *s)
     return s->change < 0.0f ? s->change * s->change / (2.0f * s->rate) : 0.0f;
 }
 
-/* Can the change be kept while the rate falls to another one? */
-static bool can_keep(struct hold *h, struct hold_trial *s, float to)
-{
-    const float t = (s->rate - to) / (-s->change * (float)KEEP_PARTS);
-
-    TAKT_ASSERT(s->change < 0.0f && to >= 0.0f);
-    for (unsigned i = 0; i < KEEP_PARTS && t > 0.0f; i++) {
-        const struct hold_trial from = *s;
-
-        try_advance(s, 0.0f, t);
-        if (!takt_hold_can_go(h, &from, s, 0.0f)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /*
- * To rest: the change goes by -e to -c, is kept, and goes back to 0 by e. It is kept where c is
- * less than without that: r + (q |q| - c^2)/2e = c^2/2e where q > 0, else with -q^2.
+ * To rest: the change goes by -e to -c, and back to 0 by e: r + (q |q| - c^2)/2e = c^2/2e where
+ * q > 0, else with -q^2.
  */
-static bool can_rest(struct hold *h, struct hold_trial s, float e, float most,
-                     struct hold_ending *ending)
+static bool can_rest(struct hold *h, struct hold_trial s, float e, struct hold_ending *ending)
 {
-    const float unkept = single_sqrt(e * s.rate + 0.5f * s.change * s.change);
-    const float peak = single_max(single_min(unkept, most), -s.change);
+    const float peak = single_sqrt(e * s.rate + 0.5f * s.change * s.change);
 
     ending->ease = (double)e;
     ending->peak = (double)peak;
-    return peak > 0.0f && can_turn(h, &s, e) &&
-           (-s.change >= peak || can_change(h, &s, -peak, -e)) &&
-           can_keep(h, &s, 0.5f * peak * peak / e) && can_change(h, &s, 0.0f, e);
+    return can_turn(h, &s, e) && (-s.change >= peak || can_change(h, &s, -peak, -e)) &&
+           can_change(h, &s, 0.0f, e);
 }
 
 /*
@@ -277,9 +251,8 @@ static bool find_ending(struct hold *h, const struct path *path, const struct re
     const float other = single_max(least, ease_part[h->turn % EASES] * hardest);
     const bool tries = first && other > 0.0f && other <= hardest;
 
-    return (stop && known > 0.0f &&
-            can_rest(h, *s, single_max(least, known), (float)h->ending.peak, ending)) ||
-           (stop && tries && can_rest(h, *s, other, KEPT_PART * takt_hold_brake(h), ending)) ||
+    return (stop && known > 0.0f && can_rest(h, *s, single_max(least, known), ending)) ||
+           (stop && tries && can_rest(h, *s, other, ending)) ||
            (known > least && can_ease(h, path, l, *s, known, stop, ending)) ||
            (tries && can_ease(h, path, l, *s, other, stop, ending));
 }
@@ -330,24 +303,6 @@ static double go_to(struct hold *h, double to, double w, double left)
     return left - t;
 }
 
-/*
- * The change that is to be kept is, as long as the rate is too high for the ease to end it at rest.
- * What is left of the cycle then.
- */
-static double keep_change(struct hold *h, double left)
-{
-    const double q = h->place.change;
-
-    if (!(h->ending.peak > 0.0) || !(q < 0.0)) {
-        return left;
-    }
-    const double wait = (h->place.rate - q * q / (2.0 * h->ending.ease)) / -q;
-    const double t = maths_clamp(wait, 0.0, left);
-
-    advance(&h->place, 0.0, t);
-    return left - t;
-}
-
 /* As what was found last ends. */
 static void go_on_ending(struct hold *h)
 {
@@ -359,7 +314,6 @@ static void go_on_ending(struct hold *h)
     if (h->place.change > -h->ending.peak && h->ending.peak > 0.0) {
         left = go_to(h, -h->ending.peak, -e, left);
     }
-    left = keep_change(h, left);
     h->ending.peak = left > 0.0 ? 0.0 : h->ending.peak;
     if (h->place.change != 0.0) {
         left = go_to(h, 0.0, h->place.change < 0.0 ? e : -e, left);

@@ -2,8 +2,8 @@
  * A feed hold on a smoothed curve or an arc, and the start after it: as quickly as the axes can at
  * each place of the curve.
  *
- * The place on the curve u, in pieces, moves by its rate r = u', its change q = r' and a constant w
- * = q' in each cycle:
+ * The place on the curve u, in pieces, moves by its rate r = u', its change q = r' and a constant
+ * w = q' in each cycle:
  *
  *     rate |‾‾‾\                 change q |   ___
  *          |    \                         |\_/   \  /     w: the hardest that leaves a way back to a constant rate

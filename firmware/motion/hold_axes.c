@@ -4,7 +4,6 @@
  */
 #include "motion/hold_axes.h"
 
-#include "base/assert.h"
 #include "smooth/single.h"
 
 /*
@@ -154,31 +153,9 @@ bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct h
     return true;
 }
 
-float takt_hold_brake(const struct hold *h)
-{
-    const float *p = hold_piece(h, h->here);
-    const float f = (float)h->place.at;
-    const float r = (float)h->place.rate;
-    float most = SINGLE_INFINITY;
-
-    TAKT_ASSERT(h->end != h->here && r >= 0.0f);
-    for (unsigned i = 0; i < h->axes; i++) {
-        const float bend = p[h->axes + i];
-        const float third = p[2 * h->axes + i] - bend;
-        const float first = p[i] + f * (bend + 0.5f * f * third);
-        const float curve = (bend + f * third) * r * r;
-        const float left = h->acceleration[i] + (first < 0.0f ? -curve : curve);
-
-        if (left < most * single_abs(first)) {
-            most = single_max(0.0f, left) / single_abs(first);
-        }
-    }
-    return most;
-}
-
 /*
- * What an axis has left for x' w in this cycle: of J beside 3 x'' r q + x''' r^3, of A beside x' q
- * + x'' r^2.
+ * What an axis has left for x' w in this cycle: of J beside 3 x'' r q + x''' r^3, of A beside x'
+ * q + x'' r^2.
  */
 static struct range left_of(const struct hold *h, unsigned i, float x1, float x2, float x3)
 {

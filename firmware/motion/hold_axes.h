@@ -31,12 +31,6 @@ struct hold_trial {
 bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
                       float w);
 
-/*
- * How fast the rate may fall by the acceleration of the axes where it is: 0 and more; infinite
- * where none moves.
- */
-float takt_hold_brake(const struct hold *h);
-
 /* w between which every axis keeps A and J where it is; limited where none moves. */
 struct range takt_hold_steps(const struct hold *h);
 

@@ -1,6 +1,6 @@
 /*
- * With a piece from c0 to c3 of a uniform cubic B-spline its derivatives by the piece are x' = (c2
- * - c0)/2 and x'' = c0 - 2 c1 + c2 where it begins.
+ * With a piece from c0 to c3 of a uniform cubic B-spline its derivatives by the piece are
+ * x' = (c2 - c0)/2 and x'' = c0 - 2 c1 + c2 where it begins.
  */
 #include "motion/hold_pieces.h"
 
@@ -173,8 +173,8 @@ static void read_part(struct hold *h, struct path *path)
 }
 
 /*
- * The way to rest at this feed, mm a cycle: v/2 (v/a + a/J) of the axis that takes longest, a^2 <=
- * v J.
+ * The way to rest at this feed, mm a cycle: v/2 (v/a + a/J) of the axis that takes longest,
+ * a^2 <= v J.
  */
 static double way_to_rest(const struct hold *h, const struct curve *c, double feed_mm)
 {

@@ -10,8 +10,8 @@
  *     |x''|^2  = (first a)^2 + (second v^2)^2
  *     |x'''|^2 = (first j + third v^3)^2 + (3 second v a)^2       (worst sign of j)
  * The parts given to each term: curvature ARC_ACCELERATION of the acceleration and ARC_JERK of the
- * jerk at cruise; RAMP_NORMAL and RAMP_ALONG bound the two components of jerk in a ramp (0.6^2 +
- * 0.8^2 = 1).
+ * jerk at cruise; RAMP_NORMAL and RAMP_ALONG bound the two components of jerk in a ramp
+ * (0.6^2 + 0.8^2 = 1).
  */
 #include "plan/block.h"
 
@@ -199,8 +199,8 @@ static double chord_ceiling(const struct curve *curve, const struct curve_bounds
 
 /*
  * On an arc of two radii x_ss and x_sss are not quite normal to the path and along it. What the
- * formulas at the top miss is at most along (second v^2) in acceleration, and along (3 second v a)
- * + across (third v^3) in jerk.
+ * formulas at the top miss is at most along (second v^2) in acceleration, and along (3 second v
+ * a) + across (third v^3) in jerk.
  */
 static void limit_curved_plane(struct block_shape *shape, enum axis first, enum axis second,
                                const struct curve_bounds *bounds, const struct plan_limits *limits)

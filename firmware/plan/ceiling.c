@@ -99,8 +99,8 @@ double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, 
 
 /*
  * Could the trapezoidal reference not come to rest before a place any more when this ceiling is
- * taken? By then it has gone on at its feed, which it keeps for a window before it brakes: w t +
- * w^2 / 2 a.
+ * taken? By then it has gone on at its feed, which it keeps for a window before it brakes: w
+ * t + w^2 / 2 a.
  */
 static bool is_near(const struct builder *s, uint64_t at)
 {

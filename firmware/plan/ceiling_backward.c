@@ -1,7 +1,7 @@
 /*
  * The backward pass over the pieces of a ceiling: the feed at the end of each from which what
- * follows can be met, and the last one stopped at, by constant deceleration: u = min(c^2, u_next +
- * 2 a L), u the feed squared.
+ * follows can be met, and the last one stopped at, by constant deceleration: u = min(c^2,
+ * u_next + 2 a L), u the feed squared.
  */
 #include "plan/ceiling_backward.h"
 

@@ -15,16 +15,16 @@
  * a junction at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration
  * limit. The blocks beside it leave it that part (block.c): up to BLOCK_JERK_BUDGET_MAX.
  *
- * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v cycle / 4
- * <= d over the axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside
- * what the axes can do. Where the motions have a tolerance P, what curves beside the corner take
- * counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
+ * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v
+ * cycle / 4 <= d over the axes X, Y, Z, and d what a chord may be off. It binds where a cycle is
+ * long beside what the axes can do. Where the motions have a tolerance P, what curves beside the
+ * corner take counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
  *
  * Short blocks. Junctions less than three cycles apart add up. With f = min(1, d / (6 cycles)), d
  * the time of the shorter block beside a junction at its ceiling, a junction may use f of the jerk
- * budget. If several fall into three cycles, each block between them, of time D_b, bounds f by D_b
- * / (6 cycles) for the junctions at its two ends, and the D_b add up to less than three cycles: the
- * sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are
+ * budget. If several fall into three cycles, each block between them, of time D_b, bounds f by
+ * D_b / (6 cycles) for the junctions at its two ends, and the D_b add up to less than three cycles:
+ * the sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are
  * lowered. Each block that can fall into the same three cycles as a junction (jerk_budget.c) leaves
  * it (what the junction takes) / f: what all junctions of those three cycles take together is then
  * at most what each block in them leaves.
@@ -246,8 +246,8 @@ static bool is_worth_passing(const struct block *before, const struct block *aft
 /*
  * The trapezoidal reference brakes in whole cycles, and so comes to a low feed too late: by half of
  * a cycle's way at the feed before, or by a cycle2 / 8 at most. The two cycles by which a ceiling
- * begins earlier (ceiling.h) make up for that if it is at least a quarter of that feed, or a cycle
- * / 16. A slower block is come to at rest.
+ * begins earlier (ceiling.h) make up for that if it is at least a quarter of that feed, or a
+ * cycle / 16. A slower block is come to at rest.
  */
 static bool is_too_slow(const struct block *before, const struct block *after, double cycle_s)
 {

@@ -2,8 +2,8 @@
  * G2.2, G3.2: along an involute of a circle. I J K of the plane lead from the start to the centre
  * of the base circle (with G90.1 they are it), R is its radius.
  *
- * A point of the involute at the distance d from the centre has been unrolled by the angle phi =
- * sqrt((d/r)^2 - 1); its radius vector has turned meanwhile by
+ * A point of the involute at the distance d from the centre has been unrolled by the angle
+ * phi = sqrt((d/r)^2 - 1); its radius vector has turned meanwhile by
  *
  *     inv = phi - atan phi
  *

@@ -96,8 +96,8 @@ static struct profile_point nearer(struct profile_point near, struct profile_poi
 }
 
 /*
- * The line through s, and the circle of c: from the foot of its centre on the line, h along it, h^2
- * = r^2 - distance^2.
+ * The line through s, and the circle of c: from the foot of its centre on the line, h along it,
+ * h^2 = r^2 - distance^2.
  */
 static struct profile_point meet_circle(const struct profile_segment *s,
                                         const struct profile_segment *c, struct profile_point near)

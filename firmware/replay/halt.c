@@ -143,8 +143,8 @@ static double curve_at(const struct halt_curve *l, struct rate *r, double t)
 
 /*
  * u"' = 6 a3 + 24 a4 t + 60 a5 t^2 is within the bounds of rate.h and never negative, so that the
- * rate and its change only fall, in size, to 0. Where it is least or most: at the ends, and at t =
- * -a4 / 5 a5, by -12 a4^2 / 5 a5.
+ * rate and its change only fall, in size, to 0. Where it is least or most: at the ends, and at
+ * t = -a4 / 5 a5, by -12 a4^2 / 5 a5.
  */
 static bool is_good(const struct halt_curve *l, const struct rate *r, double n)
 {
@@ -162,8 +162,8 @@ static bool is_good(const struct halt_curve *l, const struct rate *r, double n)
 }
 
 /*
- * Cycles of a landing that begins at rest, whose rate is 15 w / 8 n at most, its change 10 w /
- * (sqrt 3 n^2) and that one's change 60 w / n^3. 0: so many that it had better be driven as
+ * Cycles of a landing that begins at rest, whose rate is 15 w / 8 n at most, its change 10
+ * w / (sqrt 3 n^2) and that one's change 60 w / n^3. 0: so many that it had better be driven as
  * ordered.
  */
 static double hop_cycles(const struct rate *r, double to, double way)

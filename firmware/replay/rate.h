@@ -15,8 +15,8 @@
  *
  *     L = min(A / V, J / (5 A), sqrt(J / (5 V)))          over all axes,
  *
- * and from anywhere within them r can be brought to rest without leaving them: along |r'| = L (1 -
- * k r^2) it is |r"| = 2 L^2 k r (1 - k r^2) <= 2 L^2 (1 - k r^3).
+ * and from anywhere within them r can be brought to rest without leaving them: along |r'| = L
+ * (1 - k r^2) it is |r"| = 2 L^2 k r (1 - k r^2) <= 2 L^2 (1 - k r^3).
  */
 #ifndef TAKT_REPLAY_RATE_H
 #define TAKT_REPLAY_RATE_H

@@ -11,9 +11,9 @@ double takt_zv_period(const struct shape_mode *mode, double cycle_s)
 
 /*
  * Free, the mode goes on by z = r exp(j theta) in a cycle, r = exp(-damping w tau), theta = w_d
- * tau. What impulses at 0, d and d + 1 leave of it is w_0 + w_d z^-d + w_(d+1) z^-(d+1). With d =
- * floor(pi/theta), so that half a turn lies between d and d + 1 cycles, the three have weights of
- * one sign with which this is 0, real part and imaginary part:
+ * tau. What impulses at 0, d and d + 1 leave of it is w_0 + w_d z^-d + w_(d+1) z^-(d+1). With
+ * d = floor(pi/theta), so that half a turn lies between d and d + 1 cycles, the three have weights
+ * of one sign with which this is 0, real part and imaginary part:
  *
  *     w_0 = sin theta      w_d = -r^d sin (d + 1) theta      w_(d+1) = r^(d+1) sin d theta
  */

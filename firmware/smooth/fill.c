@@ -121,24 +121,16 @@ static void forget_end(struct smooth *s)
 
 bool takt_fill_fits(const struct smooth *s, unsigned axes)
 {
-    const struct verifier_way any = {MATHS_INFINITY, false};
-    const struct verifier_way short_one = {WAY_LEAST_MM, false};
-    struct verifier_change before;
-    struct verifier_change after;
+    const struct verifier_way shortest = {WAY_LEAST_MM, false};
     struct verifier_change least;
 
     if (s->window.count == 0 || (axes & ~s->route.moved) == 0) {
         return true;
     }
-    const double interval_s = s->window.interval_s;
-
     axes |= s->route.moved;
-    find_change(s, s->route.moved, interval_s, &any, &before);
-    find_change(s, axes, interval_s, &any, &after);
-    find_change(s, axes, interval_s, &short_one, &least);
-    return find_interval(s, axes) <= interval_s && after.by >= before.by &&
-           after.rounding_s <= before.rounding_s &&
-           (s->change.rounding_s >= before.rounding_s || least.rounding_s <= s->change.rounding_s);
+    find_change(s, axes, s->window.interval_s, &shortest, &least);
+    return find_interval(s, axes) <= s->window.interval_s && least.by >= s->change.by &&
+           least.rounding_s <= s->change.rounding_s;
 }
 
 /*

@@ -177,8 +177,8 @@ static inline lanes into_box(const struct relax_pass *pass, lanes k, lanes most,
 }
 
 /*
- * R (z - u - K c) of the curve at a sample. Where nothing is missing, z = t, that is t - now, and p
- * = (1 - a) t; elsewhere pull() has put other values in the place of t and now.
+ * R (z - u - K c) of the curve at a sample. Where nothing is missing, z = t, that is t - now, and
+ * p = (1 - a) t; elsewhere pull() has put other values in the place of t and now.
  */
 static inline lanes near_of(lanes *near, lanes now, float weight)
 {
@@ -321,8 +321,8 @@ static bool pull_to_line(const struct relax *x, const struct window *w, unsigned
 }
 
 /*
- * Where something is missing beside sample i: t and now are replaced so that near_of() comes to (1
- * - a) z + u and z - u - now. s: t along the route.
+ * Where something is missing beside sample i: t and now are replaced so that near_of() comes to
+ * (1 - a) z + u and z - u - now. s: t along the route.
  */
 static void pull(struct relax *x, const struct window *w, const struct route *r,
                  const struct relax_pass *pass, float tolerance_mm, unsigned i, float s)

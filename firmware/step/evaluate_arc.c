@@ -6,8 +6,8 @@
  *                2: a grows downwards, b shrinks
  *                3: b grows upwards,   a shrinks
  *
- * F = g^2 + s^2 - R^2 changes by 2 g + 1 with a step of g, by -2 s + 1 with one of s, by 2 g - 2 s
- * + 2 with both. Improved: while g < s, the first 45 degrees, g steps at every tick and s with it
+ * F = g^2 + s^2 - R^2 changes by 2 g + 1 with a step of g, by -2 s + 1 with one of s, by 2 g - 2
+ * s + 2 with both. Improved: while g < s, the first 45 degrees, g steps at every tick and s with it
  * if F > 0; from there s, and g with it if F < 0. Plain: F < 0 steps g, F > 0 steps s, F = 0 the
  * leading one. So -2 R < F < 2 R, radially less than a step. In the quadrant with the end, where
  * both coordinates are monotone, the first that has its end value leaves the rest to a line on the

@@ -234,8 +234,8 @@ static struct leader find_leader(const struct evaluate_helix *h)
 
 /*
  * With r steps for one of the leader's, and a step taken as soon as the lag is above t, the lag
- * stays above t - 1 and at most t + r: evenly on both sides, (1 + r) / 2 <= 1, with t = (1 - r) /
- * 2.
+ * stays above t - 1 and at most t + r: evenly on both sides, (1 + r) / 2 <= 1, with
+ * t = (1 - r) / 2.
  */
 static bool is_behind(double lag, double steps, const struct leader *leader)
 {

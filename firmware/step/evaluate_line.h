@@ -26,8 +26,8 @@ void takt_evaluate_line_begin(struct evaluate_line *l, enum evaluate_form form,
 bool takt_evaluate_line_next(struct evaluate_line *l, struct evaluate_tick *tick);
 
 /*
- * Ticks a second for a path speed of one step a second: improved |a| / sqrt(sum d^2), plain sum |d|
- * / sqrt(sum d^2).
+ * Ticks a second for a path speed of one step a second: improved |a| / sqrt(sum d^2), plain sum
+ * |d| / sqrt(sum d^2).
  */
 double takt_evaluate_line_rate(const struct evaluate_line *l);
 

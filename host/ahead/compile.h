@@ -15,9 +15,9 @@
 
 /*
  * Time between knots of the curve, at most, and so three axes' 3 kB a second; a slower control
- * cycle has one knot each. Less where the time in which the tolerance is crossed, T = max(cbrt(P /
- * J), sqrt(P / A)), is less than so many knots, and one cycle where nothing is blended, for every
- * section takes two knots longer than its exact path.
+ * cycle has one knot each. Less where the time in which the tolerance is crossed,
+ * T = max(cbrt(P / J), sqrt(P / A)), is less than so many knots, and one cycle where nothing is
+ * blended, for every section takes two knots longer than its exact path.
  */
 #define COMPILE_STEP_S         0.002
 #define COMPILE_CROSSING_KNOTS 2

@@ -95,9 +95,9 @@ static double feed_at(const struct guess *g, const struct ahead_element *e, cons
 }
 
 /*
- * A corner with the change of direction d, m its largest component, is passed within P = |d| v T /
- * 12 by a triangle of acceleration, T = 2 sqrt(v m / J), and within P = |d| v T / 8 by an even one,
- * T = v m / A: the slower of
+ * A corner with the change of direction d, m its largest component, is passed within P = |d| v
+ * T / 12 by a triangle of acceleration, T = 2 sqrt(v m / J), and within P = |d| v T / 8 by an even
+ * one, T = v m / A: the slower of
  *
  *     v = (6 P sqrt(J / m) / |d|)^(2/3),    v = sqrt(8 P A / (m |d|))
  *

@@ -5,8 +5,8 @@
 #include <string.h>
 
 /*
- * A drive's velocity changes once a cycle: by that an oscillator of frequency w lags (w cycle)^2 /
- * 12 (host/vibration).
+ * A drive's velocity changes once a cycle: by that an oscillator of frequency w lags (w
+ * cycle)^2 / 12 (host/vibration).
  */
 static double lag_of(const struct vibration_config *config, double cycle_s)
 {

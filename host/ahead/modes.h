@@ -50,8 +50,8 @@ struct modes_stage {
  *
  *     E_(j+1) - trace E_j + determinant E_(j-1) + pull (q_(j+1) - 2 q_j + q_(j-1)) = 0
  *
- * the recursion of its free oscillator, pull such that at an even acceleration E is -part q" /
- * w_1^2.
+ * the recursion of its free oscillator, pull such that at an even acceleration E is -part
+ * q" / w_1^2.
  */
 struct modes_stray {
     double trace, determinant, pull;

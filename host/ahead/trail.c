@@ -129,8 +129,8 @@ void trail_weights(double f, double weight[4])
 }
 
 /*
- * The same of any degree d, from 3 on (Cox, de Boor): weight_d,i = ((d - i + f) weight_d-1,i-1 + (i
- * + 1 - f) weight_d-1,i) / d
+ * The same of any degree d, from 3 on (Cox, de Boor): weight_d,i = ((d - i + f)
+ * weight_d-1,i-1 + (i + 1 - f) weight_d-1,i) / d
  */
 void trail_curve_weights(unsigned modes, double f, double *weight)
 {

@@ -100,8 +100,8 @@ static size_t end_on_a_knot(struct warp *a)
 
 /*
  * The old knot u at a time within an interval: the polynomial of degree 5 with u, du/dt = 1 / pace
- * and d2u/dt2 of both ends; d2u/dt2 by the slope of y alone, the stretch is too slow to matter: u'
- * = sqrt(y), u" = y' / 2.
+ * and d2u/dt2 of both ends; d2u/dt2 by the slope of y alone, the stretch is too slow to matter:
+ * u' = sqrt(y), u" = y' / 2.
  */
 static double knot_at(const struct warp *a, size_t cell, double time)
 {

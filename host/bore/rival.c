@@ -1,8 +1,8 @@
 /*
- * Joined arcs about p poles (p = 2: half circles, p = 4: quarter circles). The radius grows by a =
- * R / (n p) from arc to arc. Arc k, k = 1 ... n p - 1, turns from the angle 2 pi k / p to 2 pi (k +
- * 1) / p about c_k; for the next one to go on in the same direction its pole is on the line through
- * the junction and c_k:
+ * Joined arcs about p poles (p = 2: half circles, p = 4: quarter circles). The radius grows by
+ * a = R / (n p) from arc to arc. Arc k, k = 1 ... n p - 1, turns from the angle 2 pi k / p to 2 pi
+ * (k + 1) / p about c_k; for the next one to go on in the same direction its pole is on the line
+ * through the junction and c_k:
  *
  *     radius_k = k a,     c_0 = 0,     c_{k+1} = c_k - a (cos alpha, sin alpha),   alpha = 2 pi (k + 1) / p
  *

@@ -7,8 +7,8 @@
 #include <stddef.h>
 
 /*
- * a: size columns below the diagonal and with it, each of width entries: entry k of column j is (j
- * + k, j). L D L^T in place: the diagonal becomes 1 / D. Rows beyond the matrix must be 0.
+ * a: size columns below the diagonal and with it, each of width entries: entry k of column j is
+ * (j + k, j). L D L^T in place: the diagonal becomes 1 / D. Rows beyond the matrix must be 0.
  */
 void band_factor(double *a, size_t width, size_t size);
 /* Solves in place; b is L^-1 of the right side already in the second. */

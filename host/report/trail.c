@@ -139,8 +139,8 @@ void trail_finish(struct trail *t)
 /*
  * A point and the end of its strip are each within one tolerance of the same ray, and the point at
  * most one tolerance beyond that end: so it is within sqrt(2^2 + 1^2) tolerances of the way drawn.
- * Every coarsening before had half the tolerance of the next, and sqrt(5) (1 + 1/2 + 1/4 + ...) <
- * 5.
+ * Every coarsening before had half the tolerance of the next, and sqrt(5)
+ * (1 + 1/2 + 1/4 + ...) < 5.
  */
 double trail_get_error_mm(const struct trail *t)
 {

@@ -82,8 +82,8 @@ void virtual_spindle_init(struct virtual_spindle *s, const struct virtual_spindl
 }
 
 /*
- * Milling: power = specific force x volume removed a second = k_c a_e a_p v_f, torque = power /
- * angular velocity. (Mean cutting force; DIN 6580 and 6584 name the quantities.)
+ * Milling: power = specific force x volume removed a second = k_c a_e a_p v_f,
+ * torque = power / angular velocity. (Mean cutting force; DIN 6580 and 6584 name the quantities.)
  */
 double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s, double depth_mm)
 {

@@ -69,9 +69,9 @@ static double arc_distance(const struct curve *c, const struct point *p, double 
 }
 
 /*
- * The normals of an involute touch its base circle. So seen from p, unrolled by phi = sqrt((d /
- * r)^2 - 1) with the string at the angle t = angle of p + h atan phi, the nearest point has the
- * same t, and lies r |phi - h (t - heading)| away.
+ * The normals of an involute touch its base circle. So seen from p, unrolled by
+ * phi = sqrt((d / r)^2 - 1) with the string at the angle t = angle of p + h atan phi, the nearest
+ * point has the same t, and lies r |phi - h (t - heading)| away.
  */
 static double involute_nearest(const struct curve *c, double x, double y)
 {

@@ -90,8 +90,8 @@ void tearDown(void)
 /* -- what is drawn -- */
 
 /*
- * By dimensionless numbers: a ramp of acceleration takes A/J = 0.5 ... 200 cycles, one of feed V/A
- * = 5 ... 500, the axes differ by 6 in each limit; velocities and cycles are those of machines.
+ * By dimensionless numbers: a ramp of acceleration takes A/J = 0.5 ... 200 cycles, one of feed
+ * V/A = 5 ... 500, the axes differ by 6 in each limit; velocities and cycles are those of machines.
  */
 static void random_machine(struct run *r)
 {

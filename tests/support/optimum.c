@@ -10,8 +10,8 @@
 /* -- one move -- */
 
 /*
- * T = F/a + a/j for a ramp of F, 2 sqrt(F/j) where full acceleration is not reached; it covers F T
- * / 2.
+ * T = F/a + a/j for a ramp of F, 2 sqrt(F/j) where full acceleration is not reached; it covers F
+ * T / 2.
  */
 static double ramp_time(const struct optimum_move *m, double feed)
 {
@@ -75,8 +75,8 @@ static void push(struct at *p, const struct optimum_move *m, double sign, double
 
 /*
  * The fastest change to another state, whatever its way: jerk of one sign, acceleration kept if it
- * is at its limit, jerk of the other sign. With peak acceleration p: p^2 = s j dv + (a0^2 + a1^2) /
- * 2, s the first sign.
+ * is at its limit, jerk of the other sign. With peak acceleration p: p^2 = s j
+ * dv + (a0^2 + a1^2) / 2, s the first sign.
  */
 static void change(struct at *p, const struct optimum_move *m, const struct optimum_state *to)
 {

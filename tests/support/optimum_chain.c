@@ -37,8 +37,8 @@ struct search {
 static const struct optimum_state rest = {0.0, 0.0};
 
 /*
- * The highest feed to which a way from rest leads: by full acceleration, and by full jerk, v^3 =
- * 9/2 j s^2.
+ * The highest feed to which a way from rest leads: by full acceleration, and by full jerk,
+ * v^3 = 9/2 j s^2.
  */
 static double feed_after(const struct optimum_move *m)
 {

@@ -209,8 +209,8 @@ static void test_distances_between_ways(void)
 }
 
 /*
- * Of the circle with radius 1 about (x, 0), between two unrolled angles, with its string along Y =
- * 1 at a third one.
+ * Of the circle with radius 1 about (x, 0), between two unrolled angles, with its string along
+ * Y = 1 at a third one.
  */
 static struct planar involute(double x, int8_t hand, double from, double to, double along)
 {

@@ -401,9 +401,9 @@ static void test_a_corner_by_rounding_is_no_corner(void)
 
 /*
  * The tool goes outside around the circle of radius 1 about (0, 0), on one of radius 3; the line
- * behind it climbs by 0.001 from (0, 1). With a = atan 0.001, its way has the distance D = cos a +
- * 2 from (0, 0), at its foot D (sin a, cos a), and crosses the circle at sqrt(9 - D^2) before and
- * behind that. What lies between is inside the circle.
+ * behind it climbs by 0.001 from (0, 1). With a = atan 0.001, its way has the distance D = cos
+ * a + 2 from (0, 0), at its foot D (sin a, cos a), and crosses the circle at sqrt(9 - D^2) before
+ * and behind that. What lies between is inside the circle.
  */
 /* Radius 2, orientation 3: the point led lies 2 mm beside the nose's centre, and 2 mm back. */
 static void test_a_lathe_tool_is_led_beside_its_nose(void)

@@ -46,8 +46,8 @@ static void test_a_curve_is_the_sum_of_its_parts_and_zero_at_zero(void)
     const double numbers[] = {40, 8, 5, 200, 90};
 
     /*
-     * 40 um/m * 100 mm = 4; bow: s = 0 at 100, -0.5 at 0: -2; sine: sin(270 deg) - sin(90 deg) =
-     * -2, times 5
+     * 40 um/m * 100 mm = 4; bow: s = 0 at 100, -0.5 at 0: -2; sine: sin(270 deg) - sin(90
+     * deg) = -2, times 5
      */
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4 - 2 - 10, deviation_curve(numbers, 100, -100, 300));
     TEST_ASSERT_EQUAL_DOUBLE(0, deviation_curve(numbers, 0, -100, 300));

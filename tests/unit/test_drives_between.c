@@ -49,8 +49,8 @@ static void test_position_velocity_and_acceleration_are_continuous(void)
 }
 
 /*
- * Between them it is where the course is, a cycle later: straight lines are off by acceleration /
- * 8.
+ * Between them it is where the course is, a cycle later: straight lines are off by
+ * acceleration / 8.
  */
 static void test_between_targets_it_follows_the_course_a_cycle_late(void)
 {

@@ -120,8 +120,8 @@ static void limit_jerk(uint32_t jerk_inc_s3)
 }
 
 /*
- * (400 + 2 900) mm/s2 by 20,000 mm/s3: 110 cycles longer than v / 2a + v / 2d + s / v = 0.1 +
- * 0.0444 + 0.375 s.
+ * (400 + 2 900) mm/s2 by 20,000 mm/s3: 110 cycles longer than
+ * v / 2a + v / 2d + s / v = 0.1 + 0.0444 + 0.375 s.
  */
 static void test_a_profile_of_limited_jerk_lands_exactly_and_later_by_its_average(void)
 {

@@ -161,8 +161,8 @@ static void test_the_junction_with_the_circle_keeps_curvature_and_not_its_deriva
 }
 
 /*
- * The page: at constant feed the jerk is sqrt(1 + 1/phi^2) times the circle's, 5.1 times at phi =
- * 0.2.
+ * The page: at constant feed the jerk is sqrt(1 + 1/phi^2) times the circle's, 5.1 times at
+ * phi = 0.2.
  */
 static void test_the_third_derivative_is_larger_than_a_circles_by_the_pages_factor(void)
 {

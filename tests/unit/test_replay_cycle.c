@@ -194,6 +194,69 @@ static void test_a_block_that_the_path_does_not_know_yet_is_waited_for_at_the_en
     TEST_ASSERT_EQUAL(TAKT_OK, replay.alarm.code);
 }
 
+static void test_of_many_blocks_no_cycle_passes_more_than_64(void)
+{
+    const struct replay_source source = {.read = read_bytes};
+    const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
+    struct cycle_record record;
+    unsigned most = 0;
+
+    begin_path();
+    for (unsigned i = 0; i < 200; i++) {
+        push_line(i % 2 == 0 ? 1 : 0);
+    }
+    takt_path_finish(&path);
+    takt_path_go_on(&path);
+    takt_motion_build(&motion);
+    add_section_of(1, 200, KNOTS_BYTES);
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
+    for (unsigned i = 0; i < 100 && path.first != path.pushed; i++) {
+        const uint32_t first = path.first;
+
+        takt_replay_read(&replay, &limits);
+        if (takt_motion_cycle(&motion, &as_programmed, &record) == MOTION_HANDED_OVER) {
+            TEST_ASSERT_EQUAL(REPLAY_CYCLE,
+                              takt_replay_cycle(&replay, &motion, &as_programmed, &record));
+        }
+        most = path.first - first > most ? path.first - first : most;
+    }
+    TEST_ASSERT_EQUAL(TAKT_OK, replay.alarm.code);
+    TEST_ASSERT_EQUAL(path.pushed, path.first);
+    TEST_ASSERT_EQUAL(64, most);
+}
+
+/* The end's record is damaged, and comes when the axes stand there. */
+static void test_a_damaged_record_is_told_while_a_block_is_waited_for(void)
+{
+    const struct replay_source source = {.read = read_bytes};
+    const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
+    struct cycle_record record;
+    enum replay_result result = REPLAY_CYCLE;
+
+    begin_path();
+    push_line(1);
+    push_line(0);
+    push_line(1);
+    add_section_of(1, 4, KNOTS_BYTES);
+    bytes[length - 1] ^= 1U;
+    length -= REPLAY_RECORD_HEAD + REPLAY_RECORD_TAIL;
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
+    for (unsigned i = 0; i < 100 && result == REPLAY_CYCLE; i++) {
+        length += i == 50 ? REPLAY_RECORD_HEAD + REPLAY_RECORD_TAIL : 0;
+        takt_replay_read(&replay, &limits);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_path_go_on(&path);
+            takt_motion_build(&motion);
+        }
+        if (takt_motion_cycle(&motion, &as_programmed, &record) == MOTION_HANDED_OVER) {
+            result = takt_replay_cycle(&replay, &motion, &as_programmed, &record);
+            TEST_ASSERT_EQUAL(i >= 50 ? REPLAY_FAILED : REPLAY_CYCLE, result);
+        }
+    }
+    TEST_ASSERT_EQUAL(REPLAY_FAILED, result);
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_DAMAGED, replay.alarm.code);
+}
+
 static double run_with_three_blocks(void (*what_follows)(void))
 {
     begin_path();
@@ -252,6 +315,8 @@ int main(void)
     RUN_TEST(test_a_section_of_another_block_moves_nothing);
     RUN_TEST(test_a_curve_that_does_not_lead_to_the_end_is_told);
     RUN_TEST(test_a_block_that_the_path_does_not_know_yet_is_waited_for_at_the_end_of_the_curve);
+    RUN_TEST(test_of_many_blocks_no_cycle_passes_more_than_64);
+    RUN_TEST(test_a_damaged_record_is_told_while_a_block_is_waited_for);
     RUN_TEST(test_a_block_that_never_comes_is_told_at_the_end_of_the_curve);
     RUN_TEST(test_what_follows_and_is_no_motion_is_told_at_the_end_of_the_curve);
     RUN_TEST(test_a_damaged_record_moves_nothing);

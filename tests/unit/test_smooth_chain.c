@@ -103,6 +103,22 @@ static void test_axes_that_are_known_before_the_first_piece_share_one_chain(void
     TEST_ASSERT_TRUE(joins(AXIS_Z));
 }
 
+/*
+ * Four times as fast with the same jerk: what changes of the rate are rounded over on a short way
+ * leaves it too little.
+ */
+static void test_an_axis_that_needs_more_jerk_for_changes_of_rate_does_not_join_a_short_chain(void)
+{
+    struct smooth_limits fast = mill;
+
+    fast.velocity_mm_s[AXIS_Z] = 400.0;
+    fast.acceleration_mm_s2[AXIS_Z] = 1000.0;
+    fast.jerk_mm_s3[AXIS_Z] = 50000.0;
+    takt_smooth_init(&smooth, &fast);
+    go_around(10);
+    TEST_ASSERT_FALSE(joins(AXIS_Z));
+}
+
 static void test_the_next_chain_serves_the_axes_of_both(void)
 {
     go_around(10);
@@ -163,6 +179,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_an_axis_that_needs_a_longer_interval_does_not_join_a_chain_that_has_begun);
     RUN_TEST(test_axes_that_are_known_before_the_first_piece_share_one_chain);
+    RUN_TEST(test_an_axis_that_needs_more_jerk_for_changes_of_rate_does_not_join_a_short_chain);
     RUN_TEST(test_the_next_chain_serves_the_axes_of_both);
     RUN_TEST(test_a_chain_that_ends_by_itself_leaves_no_axes_to_the_next);
     RUN_TEST(test_after_a_reset_no_axes_are_expected);

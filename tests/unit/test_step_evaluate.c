@@ -180,8 +180,8 @@ static void test_the_rate_of_a_line_is_that_of_its_ticks(void)
 }
 
 /*
- * f0 = V max(|I|, |J|) / (h R): from V/h on an axis to V/(sqrt 2 h) at 45 degrees; plain V (|I| +
- * |J|) / (h R)
+ * f0 = V max(|I|, |J|) / (h R): from V/h on an axis to V/(sqrt 2 h) at 45 degrees; plain V
+ * (|I| + |J|) / (h R)
  */
 static void test_the_rate_of_an_arc_follows_the_angle(void)
 {

@@ -193,8 +193,8 @@ static void test_an_arc_is_measured_by_its_curve_and_not_by_chords(void)
 }
 
 /*
- * On a circle of 0.105 in place of 0.2, 1.2 rad from each other: their lines come to 0.105 cos 0.6
- * = 0.2 - 0.113.
+ * On a circle of 0.105 in place of 0.2, 1.2 rad from each other: their lines come to 0.105 cos
+ * 0.6 = 0.2 - 0.113.
  */
 static void test_between_setpoints_of_a_bend_the_axes_do_not_go_straight(void)
 {

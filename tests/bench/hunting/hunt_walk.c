@@ -21,8 +21,8 @@ static const size_t windows[] = {1, 16, 256};
 static const struct span nowhere = {2, -1};
 
 /*
- * The parts f of a segment with |p - start - f way| <= within: |f - g| <= sqrt((within^2 - d^2) /
- * way^2).
+ * The parts f of a segment with |p - start - f way| <= within:
+ * |f - g| <= sqrt((within^2 - d^2) / way^2).
  */
 static struct span near(unsigned axes, const double *start, const double *way, double square_mm2,
                         const double *p, double within_mm)
