@@ -35,9 +35,10 @@ static void add_corner(struct relax *x, const struct window *w, unsigned group, 
                        float weight)
 {
     const unsigned first = group * w->capacity + x->corners.piece[corner];
-    const float *row = x->corners.weight[corner];
+    float row[4];
 
     TAKT_ASSERT(x->corners.piece[corner] + 3U < w->count);
+    takt_window_weights(x->corners.fraction[corner], row);
     for (unsigned i = 0; i < 4; i++) {
         for (unsigned k = i; k < 4; k++) {
             x->band[k - i][first + i] += weight * row[i] * row[k];

@@ -101,7 +101,7 @@ static void begin(struct smooth *s, const struct move *move)
     struct smooth_limits limits = s->limits;
 
     TAKT_ASSERT(!s->open && move->tolerance_mm > 0.0);
-    takt_smooth_limit(&limits, tolerance_mm);
+    takt_smooth_limit(&limits);
     takt_route_init(&s->route, &limits, tolerance_mm);
     s->route.moved = s->expected;
     s->expected = 0;
@@ -118,8 +118,6 @@ static void begin(struct smooth *s, const struct move *move)
     s->stands = false;
     takt_order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
-    s->tried_mm = 0.0;
-    s->tried = 0;
     s->merge.open = false;
 }
 

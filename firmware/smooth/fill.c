@@ -6,6 +6,7 @@
 
 #include "base/assert.h"
 #include "base/maths.h"
+#include "smooth/chord.h"
 #include "smooth/interval.h"
 #include "smooth/nominal.h"
 
@@ -33,7 +34,7 @@ static void find_change(const struct smooth *s, unsigned axes, double interval_s
     struct smooth_limits limits = s->limits;
 
     limits.axes &= axes;
-    takt_smooth_limit(&limits, s->route.tolerance_mm);
+    takt_smooth_limit(&limits);
     takt_verifier_change(&limits, interval_s, way, change);
 }
 
@@ -45,35 +46,43 @@ static double find_interval(const struct smooth *s, unsigned axes)
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
-static void set_interval(struct smooth *s)
+static void set_interval(struct smooth *s, float fine)
 {
-    const double interval_s = find_interval(s, s->route.moved);
+    const double interval_s =
+        maths_max(takt_interval_least(&s->limits), (double)fine * find_interval(s, s->route.moved));
     const struct verifier_way way = way_of(s);
 
     TAKT_ASSERT(interval_s > 0.0);
     find_change(s, s->route.moved, interval_s, &way, &s->change);
     s->route.slots.change_per_s = (float)s->change.wanted;
     s->route.slots.rounded_per_s2 = (float)(s->change.wanted / s->change.rounding_s);
-    s->route.chord_per_second =
-        (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
+    takt_chord_init(&s->route.chord, s->limits.cycle_s, interval_s);
     takt_window_init(&s->window, &s->route, interval_s);
 }
 
-void takt_fill_within(struct smooth *s, float part)
+/* In a tolerance of all its reach a chain is not held at all. */
+float takt_fill_useful(const struct smooth *s)
 {
-    TAKT_ASSERT(part > 0.0f && part <= 1.0f);
+    const double most = takt_interval_reach(&s->route) / s->merge.move.tolerance_mm;
+
+    return s->finished && most < 1.0 ? (float)most : 1.0f;
+}
+
+void takt_fill_within(struct smooth *s, float part, float fine)
+{
+    TAKT_ASSERT(part > 0.0f && part <= 1.0f && fine > 0.0f && fine <= 1.0f);
     if (s->route.part < part || s->route.part > part) {
         s->route.part = part;
         takt_nominal_again(&s->route);
     }
-    set_interval(s);
+    set_interval(s, fine);
     s->window.count = SMOOTH_FIXED;
 }
 
 void takt_fill_begin_anew(struct smooth *s)
 {
     TAKT_ASSERT(s->open && s->ready == 0);
-    takt_fill_within(s, 1.0f);
+    takt_fill_within(s, 1.0f, 1.0f);
     s->starts = true;
     s->proved = 0;
 }
@@ -133,16 +142,6 @@ bool takt_fill_fits(const struct smooth *s, unsigned axes)
            least.rounding_s <= s->change.rounding_s;
 }
 
-/*
- * Is the route still not known far enough for the place that was tried last? One that has been
- * passed says nothing.
- */
-static bool is_tried_in_vain(const struct smooth *s)
-{
-    return !is_all_known(s) && s->tried >= s->route.first &&
-           feels_end(s, s->tried_mm, s->tried, takt_route_end(&s->route));
-}
-
 /* From rest the interval is that of what is known now: whether that is all of the chain. */
 static void begin_window(struct smooth *s)
 {
@@ -151,7 +150,7 @@ static void begin_window(struct smooth *s)
     if (stands && !s->starts) {
         return;
     }
-    set_interval(s);
+    set_interval(s, 1.0f);
     if (stands) {
         s->window.count = SMOOTH_FIXED;
     } else {
@@ -164,21 +163,12 @@ bool takt_fill(struct smooth *s)
     struct window *w = &s->window;
 
     TAKT_ASSERT(w->count <= SMOOTH_SAMPLES_MAX);
-    if (s->route.count == 0 || is_tried_in_vain(s)) {
+    if (s->route.count == 0 || !is_all_known(s)) {
         return false;
     }
     begin_window(s);
     forget_end(s);
-    const unsigned before = w->count;
-
     takt_window_extend(w, &s->route);
-    s->tried_mm = w->at_mm[w->count - 1];
-    s->tried = w->element[w->count - 1];
-    if (!is_all_known(s) && (w->at_end || last_feels_end(s, takt_route_end(&s->route)))) {
-        w->count = before;
-        w->at_end = false;
-        return false;
-    }
     s->known_mm = takt_route_end(&s->route);
     return true;
 }

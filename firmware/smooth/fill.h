@@ -7,11 +7,14 @@
 /* Fills the window; false when more of the route must be known first. */
 bool takt_fill(struct smooth *s);
 
+/* The widest part of the tolerance that is of any use. */
+float takt_fill_useful(const struct smooth *s);
+
 /*
- * From rest: another part of the tolerance, the interval and nominal feeds for it; the window is
- * empty but for its start.
+ * From rest: another part of the tolerance, nominal feeds for it, and so much of its interval; the
+ * window is empty but for its start.
  */
-void takt_fill_within(struct smooth *s, float part);
+void takt_fill_within(struct smooth *s, float part, float fine);
 
 /* Where the axes stand, and nothing is ready: whatever ends there, a curve may begin anew. */
 void takt_fill_begin_anew(struct smooth *s);

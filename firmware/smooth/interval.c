@@ -12,6 +12,9 @@
 #define INTERVAL_OF_JERK         0.7
 #define INTERVAL_OF_ACCELERATION 0.9
 
+/* It is at least this part of a cycle, for which two pieces are planned at most. */
+#define INTERVAL_LEAST_CYCLES 0.5
+
 /*
  * A window is at least this part of the time in which the slowest axis reaches its velocity:
  * README.md.
@@ -24,10 +27,7 @@
 /* A chain has so many intervals at least at its nominal feed before it needs shorter ones. */
 #define INTERVALS_LEAST 16.0
 
-/*
- * How far a route leads away from where it begins, in the direction of an axis; of bends no less.
- */
-static double reach_of(const struct route *r)
+double takt_interval_reach(const struct route *r)
 {
     double start[AXIS_COUNT];
     double p[AXIS_COUNT];
@@ -79,6 +79,11 @@ static double longest_ramp(const struct smooth_limits *limits, unsigned axes, do
     return longest;
 }
 
+double takt_interval_least(const struct smooth_limits *machine)
+{
+    return INTERVAL_LEAST_CYCLES * machine->cycle_s;
+}
+
 /* Interval by the axis that crosses the tolerance soonest. */
 static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
                                double tolerance_mm)
@@ -95,7 +100,7 @@ static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
             soonest = maths_min(soonest, maths_max(jerk, acceleration));
         }
     }
-    return maths_max(curve->cycle_s, soonest);
+    return maths_max(takt_interval_least(curve), soonest);
 }
 
 static double interval_within(const struct smooth_limits *machine, const struct route *r,
@@ -103,7 +108,7 @@ static double interval_within(const struct smooth_limits *machine, const struct 
 {
     struct smooth_limits curve = *machine;
 
-    takt_smooth_limit(&curve, r->tolerance_mm);
+    takt_smooth_limit(&curve);
     return maths_max(
         soonest_interval(&curve, axes, maths_min(tolerance_mm, CUT_OF_REACH * reach_mm)),
         longest_ramp(machine, axes, reach_mm) * WINDOW_OF_RAMP / window_capacity(r));
@@ -125,7 +130,7 @@ double takt_interval_of(const struct smooth_limits *machine, const struct route 
     }
     const double start_mm = route_element(r, r->first)->start_mm;
     const double time = (double)takt_route_time(r, r->first, start_mm, takt_route_end(r));
-    const double least = interval_within(machine, r, axes, tolerance_mm, reach_of(r));
+    const double least = interval_within(machine, r, axes, tolerance_mm, takt_interval_reach(r));
 
     return maths_min(any, maths_max(least, time / INTERVALS_LEAST));
 }

@@ -35,8 +35,6 @@ struct smooth_limits {
     double cycle_s; /* control cycle */
     /* all windows of its ramp law together, as a multiple of the first one (plan/ramp_profile.h) */
     double windows;
-    /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
-    double chord_mm;
 };
 
 /*
@@ -50,7 +48,11 @@ static inline double smooth_weight(int axis)
     return axis < AXIS_LINEAR_COUNT ? 1.0 : SMOOTH_RAD_WEIGHT;
 }
 
-/* What of a machine's limits is of use for a curve within a tolerance; sets chord_mm. */
-void takt_smooth_limit(struct smooth_limits *limits, double tolerance_mm);
+/*
+ * What of a machine's limits is of use. Between -V and V an axis comes to sqrt(2 V J) at most,
+ * rising and falling by J: what it could do beyond that is of no use, and nothing is to depend on
+ * it.
+ */
+void takt_smooth_limit(struct smooth_limits *limits);
 
 #endif

@@ -104,7 +104,7 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
                : chord_mm + 3.0f * tolerance_mm;
 
     TAKT_ASSERT(l->at_mm <= end_mm);
-    l->within_mm = chord->within_mm - (curved ? CURVED_OFF * tolerance_mm : 0.0f);
+    l->within_mm = curved ? chord->corner_mm - CURVED_OFF * tolerance_mm : chord->within_mm;
     l->ends = curved || l->at_mm + (double)reach_mm >= end_mm;
     return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
 }

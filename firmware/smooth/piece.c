@@ -8,6 +8,9 @@
 /* Windows are whole cycles, and so is where the trapezoidal reference begins. */
 #define STANDING_CYCLES 3.0
 
+/* The end of a route is that of a window but for this many of its units. */
+#define ROUNDED 2.0
+
 /*
  * At both ends of what begins and ends at rest by itself the axes stand, and the rate of nominal
  * time rises and falls: over a cycle, and the setpoint's over the windows W of its averages more.
@@ -38,6 +41,7 @@ static void set_control(const struct smooth *s, unsigned i, struct point *contro
     takt_window_sample(w, &s->route, i, p);
     memset(control, 0, sizeof(*control));
     for (unsigned k = 0; k < s->route.slots.count; k++) {
+        TAKT_ASSERT(!end || maths_abs(s->route.end[k] - p[k]) <= ROUNDED * w->unit_mm[k]);
         control->at[s->route.slots.axis[k]] = end ? s->route.end[k] : p[k];
     }
 }

@@ -15,7 +15,9 @@
 
 #include "base/assert.h"
 #include "smooth/bands.h"
+#include "smooth/chord.h"
 #include "smooth/relax_corners.h"
+#include "smooth/relax_scale.h"
 #include "smooth/single.h"
 
 #include <string.h>
@@ -32,15 +34,6 @@
 /* How much less acceleration and jerk are preferred to more, inside their boxes. */
 #define BOX_WEIGHT 0.3f
 
-/* Rows that count more than this, relative to the tolerance, would leave too few digits. */
-#define SCALE_MAX 300.0f
-
-/* Rows of second differences count so much more: along straights they alone find ramps. */
-#define SECOND_COUNTS 2.0f
-
-/* The need of the axis of least acceleration counts for all, up to so many times the most's. */
-#define SECOND_SPAN 4.0f
-
 /* What a curved route may leave its tangent by for that to stand for it: s^2/2R, in tolerances. */
 #define CURVED 0.05f
 
@@ -54,66 +47,7 @@ struct relax_pass {
     float keep_boxes; /* part of their sums that is kept */
     float keep_near;
     float weight;
-    float corner_most; /* tolerance of corners, as a part of the tolerance */
 };
-
-/* The least and the most that a row counts, over the slots of a group. */
-struct relax_span {
-    float least, most;
-};
-
-static void widen(struct relax_span *span, float per_near)
-{
-    span->least = single_min(span->least, per_near);
-    span->most = single_max(span->most, per_near);
-}
-
-/*
- * What rows of second and third differences count is the same for all axes of a group, so that one
- * matrix serves them all. On machines that were tried, with axes up to ten times as quick as
- * others, these came nearest to a matrix for each axis.
- */
-static void set_rows(struct relax_scale *s, const struct route *r, unsigned group,
-                     float tolerance_mm, float d)
-{
-    struct relax_span second = {SCALE_MAX, 0.0f};
-    struct relax_span third = {SCALE_MAX, 0.0f};
-    const unsigned first = group * SMOOTH_LANES;
-
-    for (unsigned i = first; i < first + SMOOTH_LANES && i < r->slots.count; i++) {
-        const float per_near = tolerance_mm / r->slots.weight[i];
-
-        s->second_most[group][i - first] = r->slots.acceleration_mm_s2[i] * d * d / per_near;
-        s->third_most[group][i - first] = r->slots.jerk_mm_s3[i] * d * d * d / per_near;
-        widen(&second, 1.0f / s->second_most[group][i - first]);
-        widen(&third, 1.0f / s->third_most[group][i - first]);
-    }
-    s->second_per_near[group] =
-        single_min(SECOND_COUNTS * single_min(second.most, SECOND_SPAN * second.least), SCALE_MAX);
-    s->third_per_near[group] = single_min(single_sqrt(third.most * third.least), SCALE_MAX);
-    s->second_most[group] *= s->second_per_near[group];
-    s->third_most[group] *= s->third_per_near[group];
-}
-
-static void set_scale(struct relax_scale *s, const struct window *w, const struct route *r,
-                      float tolerance_mm)
-{
-    const float d = (float)w->interval_s;
-
-    TAKT_ASSERT(tolerance_mm > 0.0f && d > 0.0f);
-    memset(s, 0, sizeof(*s));
-    s->change = r->slots.change_per_s * d;
-    s->rounded = r->slots.rounded_per_s2 * d * d;
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        s->near_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            w->weighted_unit_mm[i] / tolerance_mm;
-        s->unit_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            tolerance_mm / w->weighted_unit_mm[i];
-    }
-    for (unsigned g = 0; g < r->slots.groups; g++) {
-        set_rows(s, r, g, tolerance_mm, d);
-    }
-}
 
 /* Direction of the route at a closest point, and tolerances in a mm of the route there. */
 struct relax_ahead {
@@ -132,6 +66,19 @@ static void look_ahead(struct relax_ahead *a, const struct route *r,
     }
 }
 
+/* How near to the route sample i must be; beside a bend the lines through setpoints take a part. */
+static float tube_of(const struct window *w, const struct route *r, unsigned i,
+                     const struct route_closest *closest, float radius_mm, float tolerance_mm)
+{
+    if (!route_element(r, closest->element)->curved) {
+        return tolerance_mm;
+    }
+    const float part =
+        single_max(1.0f - SMOOTH_CHORD_PART, 1.0f - takt_chord_leaves(w, r, i - 1) / tolerance_mm);
+
+    return single_min(part * tolerance_mm, TUBE_OF_RADIUS * radius_mm);
+}
+
 /* The route beside sample i: the nearest point, and as far as the direction there serves for it. */
 static void set_closest(struct relax *x, const struct window *w, const struct route *r, unsigned i,
                         float tolerance_mm, struct relax_ahead *ahead)
@@ -148,9 +95,11 @@ static void set_closest(struct relax *x, const struct window *w, const struct ro
     takt_window_place(w, r, &spot, p);
     takt_route_closest(r, p, from, to, &closest);
     look_ahead(ahead, r, &closest, tolerance_mm);
-    const float radius = takt_route_radius(r, closest.element, closest.at_mm) / tolerance_mm;
-    const float straight =
-        TUBE_OF_RADIUS * radius < 1.0f ? 0.0f : single_sqrt(2.0f * CURVED * radius);
+    const float radius_mm = takt_route_radius(r, closest.element, closest.at_mm);
+    const float tube_mm = tube_of(w, r, i, &closest, radius_mm, tolerance_mm);
+    const float straight = tube_mm < (1.0f - CURVED) * tolerance_mm
+                               ? 0.0f
+                               : single_sqrt(2.0f * CURVED * radius_mm / tolerance_mm);
     const double start = maths_max(from, route_element(r, closest.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, closest.element));
 
@@ -267,8 +216,8 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
     }
     takt_window_reach(w, i, &from, &to);
     takt_route_closest(r, p, from, to, &closest);
-    const float tube_mm = single_min(
-        tolerance_mm, TUBE_OF_RADIUS * takt_route_radius(r, closest.element, closest.at_mm));
+    const float radius_mm = takt_route_radius(r, closest.element, closest.at_mm);
+    const float tube_mm = tube_of(w, r, i, &closest, radius_mm, tolerance_mm);
     const float less = closest.distance_mm > tube_mm ? 1.0f - tube_mm / closest.distance_mm : 0.0f;
 
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -392,12 +341,12 @@ static void into_tube(struct relax *x, const struct window *w, const struct rout
     }
 }
 
-/* How far the curve is from corner k. */
-static lanes corner_of(const struct relax *x, const struct window *w, unsigned group, unsigned k)
+/* How far the curve is from corner k, beside which its samples weigh so much. */
+static lanes corner_of(const struct relax *x, const struct window *w, unsigned group, unsigned k,
+                       const float row[4])
 {
     const lanes_int *c = &w->x[group * w->capacity + x->corners.piece[k]];
     const lanes_int spot = x->corners.spot[group * x->corners.capacity + k];
-    const float *row = x->corners.weight[k];
 
     return (row[0] * lanes_of(c[0] - spot) + row[1] * lanes_of(c[1] - spot) +
             row[2] * lanes_of(c[2] - spot) + row[3] * lanes_of(c[3] - spot)) *
@@ -410,19 +359,22 @@ static void into_corner(struct relax *x, const struct window *w, const struct re
 {
     lanes now[SMOOTH_GROUPS_MAX];
     lanes t[SMOOTH_GROUPS_MAX];
+    const float most = x->corners.most[k];
+    float weight[4];
     float along = 0.0f;
     float square = 0.0f;
 
+    takt_window_weights(x->corners.fraction[k], weight);
     for (unsigned g = 0; g < groups; g++) {
         const unsigned row = g * x->corners.capacity + k;
 
-        now[g] = corner_of(x, w, g, k);
+        now[g] = corner_of(x, w, g, k, weight);
         t[g] = pass->alpha * now[g] + x->corners.state[row];
         along += lanes_sum(t[g] * x->corners.along[row]);
         square += lanes_sum(t[g] * t[g]);
     }
     const float distance = single_sqrt(single_max(0.0f, square - along * along));
-    const float less = distance > pass->corner_most ? 1.0f - pass->corner_most / distance : 0.0f;
+    const float less = distance > most ? 1.0f - most / distance : 0.0f;
 
     for (unsigned g = 0; g < groups; g++) {
         const unsigned row = g * x->corners.capacity + k;
@@ -433,7 +385,7 @@ static void into_corner(struct relax *x, const struct window *w, const struct re
 
         x->corners.state[row] = (1.0f - ALPHA) * z + u;
         for (unsigned j = 0; j < 4; j++) {
-            step[j] += x->corners.weight[k][j] * e;
+            step[j] += weight[j] * e;
         }
     }
 }
@@ -458,8 +410,8 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
 {
     struct relax_ahead ahead = {.element = UINT32_MAX};
 
-    set_scale(&x->scale, w, r, tolerance_mm);
-    takt_relax_find_corners(&x->corners, w, r);
+    takt_relax_set_scale(&x->scale, w, r, tolerance_mm);
+    takt_relax_find_corners(&x->corners, w, r, tolerance_mm);
     memset(x->near, 0, sizeof x->near);
     memset(x->second, 0, sizeof x->second);
     memset(x->third, 0, sizeof x->third);
@@ -477,7 +429,6 @@ void takt_relax_window(struct relax *x, struct window *w, const struct route *r,
     const float tolerance = (float)tolerance_mm;
     struct relax_pass pass = {.alpha = 1.0f, .box_weight = 1.0f, .weight = 1.0f};
 
-    pass.corner_most = 1.0f - r->chord_mm / tolerance;
     begin(x, w, r, tolerance);
     takt_bands_build(x, w, r, pass.weight);
     project(x, w, r, tolerance, &pass);

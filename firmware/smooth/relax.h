@@ -22,10 +22,10 @@ typedef lanes relax_rows[SMOOTH_SAMPLES_MAX];
 struct relax_corners {
     unsigned count;
     unsigned capacity;
-    unsigned char piece
-        [RELAX_CORNERS_MAX]; /* in which the curve passes it, and what its samples weigh there */
-    float weight[RELAX_CORNERS_MAX][4];
-    lanes along[RELAX_CORNERS_MAX]; /* mean direction; 0 at a reversal */
+    unsigned char piece[RELAX_CORNERS_MAX]; /* in which the curve passes it, */
+    float fraction[RELAX_CORNERS_MAX];      /* and where in that */
+    float most[RELAX_CORNERS_MAX];          /* how near it must be, as a part of the tolerance */
+    lanes along[RELAX_CORNERS_MAX];         /* mean direction; 0 at a reversal */
     lanes state[RELAX_CORNERS_MAX];
     lanes_int spot[RELAX_CORNERS_MAX];
 };

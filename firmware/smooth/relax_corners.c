@@ -2,6 +2,7 @@
 #include "smooth/relax_corners.h"
 
 #include "base/assert.h"
+#include "smooth/chord.h"
 #include "smooth/single.h"
 
 #include <string.h>
@@ -17,6 +18,9 @@
 
 /* A mean direction shorter than this belongs to a reversal. */
 #define REVERSAL 0.3f
+
+/* A corner need be no nearer than this part of the tolerance: README.md. */
+#define CORNER_LEAST 0.1f
 
 static void set_along(struct relax_corners *c, const struct route *r, uint32_t element)
 {
@@ -38,6 +42,16 @@ static void set_along(struct relax_corners *c, const struct route *r, uint32_t e
     }
 }
 
+/*
+ * The lines through setpoints come as much nearer as they leave the curve now; but a curve that is
+ * drawn into the corner bends the more.
+ */
+static float most_of(const struct window *w, const struct route *r, unsigned piece,
+                     float tolerance_mm)
+{
+    return single_max(CORNER_LEAST, 1.0f - takt_chord_leaves(w, r, piece) / tolerance_mm);
+}
+
 static void set_spot(struct relax_corners *c, const struct window *w, const struct route *r,
                      uint32_t element)
 {
@@ -54,7 +68,7 @@ static void set_spot(struct relax_corners *c, const struct window *w, const stru
  * samples.
  */
 static void add_corner(struct relax_corners *c, const struct window *w, const struct route *r,
-                       uint32_t element, unsigned *sample)
+                       uint32_t element, float tolerance_mm, unsigned *sample)
 {
     const double at = route_element(r, element)->start_mm;
     unsigned i = *sample;
@@ -73,13 +87,15 @@ static void add_corner(struct relax_corners *c, const struct window *w, const st
         return;
     }
     c->piece[c->count] = (unsigned char)(i - 1);
-    takt_window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
+    c->fraction[c->count] = (float)(at - w->at_mm[i]) / spacing;
+    c->most[c->count] = most_of(w, r, i - 1, tolerance_mm);
     set_along(c, r, element);
     set_spot(c, w, r, element);
     c->count++;
 }
 
-void takt_relax_find_corners(struct relax_corners *c, const struct window *w, const struct route *r)
+void takt_relax_find_corners(struct relax_corners *c, const struct window *w, const struct route *r,
+                             float tolerance_mm)
 {
     unsigned sample = 1;
 
@@ -91,7 +107,7 @@ void takt_relax_find_corners(struct relax_corners *c, const struct window *w, co
             return;
         }
         if (route_turn(r, e) > CORNER_MIN) {
-            add_corner(c, w, r, e, &sample);
+            add_corner(c, w, r, e, tolerance_mm, &sample);
         }
     }
 }

@@ -5,7 +5,7 @@
 #include "smooth/relax.h"
 
 /* Those that a condition of their own is worth, in their order, as many as there is room for. */
-void takt_relax_find_corners(struct relax_corners *c, const struct window *w,
-                             const struct route *r);
+void takt_relax_find_corners(struct relax_corners *c, const struct window *w, const struct route *r,
+                             float tolerance_mm);
 
 #endif

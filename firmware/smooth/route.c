@@ -28,16 +28,11 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
     s->groups = (s->count + SMOOTH_LANES - 1) / SMOOTH_LANES;
 }
 
-static void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
-{
-    r->chord_mm = (float)limits->chord_mm;
-    set_slots(&r->slots, limits);
-    r->tolerance_mm = tolerance_mm;
-}
-
 void takt_route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
-    route_limit(r, limits, tolerance_mm);
+    set_slots(&r->slots, limits);
+    r->tolerance_mm = tolerance_mm;
+    r->chord.per_acceleration = (float)(limits->cycle_s * limits->cycle_s / 8.0);
     r->moved = 0;
     r->part = 1.0f;
     r->first = 0;

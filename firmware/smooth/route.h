@@ -81,13 +81,21 @@ struct route_mode {
     unsigned used; /* elements of it */
 };
 
+/* Lines through setpoints, a cycle apart, take this part of the tolerance at most beside a bend. */
+#define SMOOTH_CHORD_PART 0.5f
+
+/* How they leave the curve. */
+struct chord_reach {
+    float per_acceleration; /* cycle^2/8 */
+    float per_second;       /* by so much of c_0 - 2 c_1 + c_2 at most: cycle^2/8 d^2 */
+    unsigned pieces; /* into so many before one, and behind it, a line reaches that is in it */
+};
+
 struct route {
     struct route_slots slots;
-    /* how far the line through setpoints may leave the curve at a corner (limits.h), */
-    float chord_mm;
-    float chord_per_second; /* and does for c_0 - 2 c_1 + c_2 */
-    unsigned moved;         /* axes that the chain moves, as far as is known, by bit */
-    float part;             /* of the tolerance, within which a curve is looked for */
+    struct chord_reach chord;
+    unsigned moved; /* axes that the chain moves, as far as is known, by bit */
+    float part;     /* of the tolerance, within which a curve is looked for */
     double tolerance_mm;
     uint32_t first;                      /* elements forgotten so far */
     uint32_t count;                      /* elements pushed so far */
@@ -100,6 +108,19 @@ struct route {
     struct route_curved curved[SMOOTH_CURVED_MAX];
     struct route_mode mode[SMOOTH_MODES_MAX];
 };
+
+/* Over all slots. */
+static inline float route_dot(const struct route *r, const lanes a[], const lanes b[])
+{
+    float dot = 0.0f;
+
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes product = a[g] * b[g];
+
+        dot = dot + product[0] + product[1] + product[2] + product[3];
+    }
+    return dot;
+}
 
 /* A place on the route near to a point. */
 struct route_closest {

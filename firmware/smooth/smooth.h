@@ -83,8 +83,6 @@ struct smooth {
     uint32_t told;    /* and its element: the latest one of the pieces taken */
     unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
     double known_mm;  /* end of the route when the window was filled */
-    double tried_mm;  /* place its last sample had when the route was not known far enough yet, */
-    uint32_t tried;   /* and the element there */
     double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
     bool exact;       /* it is */
     struct worth_since since;

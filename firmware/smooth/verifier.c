@@ -1,6 +1,7 @@
 #include "smooth/verifier.h"
 
 #include "base/assert.h"
+#include "smooth/chord.h"
 #include "smooth/single.h"
 
 #include <stddef.h>
@@ -22,33 +23,16 @@ struct steps {
     lanes way[SMOOTH_GROUPS_MAX];
 };
 
-static lanes weighted(const struct window *w, unsigned group, lanes_int units)
-{
-    return lanes_at(w->weighted_unit_mm + (size_t)group * SMOOTH_LANES) * lanes_of(units);
-}
-
 static void steps_of(const struct window *w, const struct route *r, unsigned piece, struct steps *s)
 {
     for (unsigned g = 0; g < r->slots.groups; g++) {
         const lanes_int *c = w->x + (size_t)g * w->capacity + piece;
 
         for (unsigned k = 0; k < 3; k++) {
-            s->step[k][g] = weighted(w, g, c[k + 1] - c[k]);
+            s->step[k][g] = window_weighted(w, g, c[k + 1] - c[k]);
         }
         s->way[g] = s->step[0][g] + s->step[1][g] + s->step[2][g];
     }
-}
-
-static float dot_of(const struct route *r, const lanes a[], const lanes b[])
-{
-    float dot = 0.0f;
-
-    for (unsigned g = 0; g < r->slots.groups; g++) {
-        const lanes product = a[g] * b[g];
-
-        dot = dot + product[0] + product[1] + product[2] + product[3];
-    }
-    return dot;
 }
 
 /*
@@ -57,12 +41,12 @@ static float dot_of(const struct route *r, const lanes a[], const lanes b[])
  */
 static float turn_square(const struct route *r, const struct steps *s)
 {
-    const float way = dot_of(r, s->way, s->way);
+    const float way = route_dot(r, s->way, s->way);
     float most = 0.0f;
 
     for (unsigned k = 0; k < 3; k++) {
-        const float along = dot_of(r, s->step[k], s->way);
-        const float both = dot_of(r, s->step[k], s->step[k]) * way;
+        const float along = route_dot(r, s->step[k], s->way);
+        const float both = route_dot(r, s->step[k], s->step[k]) * way;
 
         if (along < 0.0f) {
             return 1.0f;
@@ -70,37 +54,6 @@ static float turn_square(const struct route *r, const struct steps *s)
         most = both > 0.0f ? single_max(most, 1.0f - along * along / both) : most;
     }
     return most;
-}
-
-/*
- * Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the
- * second derivative.
- */
-static float second_square(const struct window *w, const struct route *r, unsigned sample)
-{
-    lanes second[SMOOTH_GROUPS_MAX];
-
-    for (unsigned g = 0; g < r->slots.groups; g++) {
-        const lanes_int *c = w->x + (size_t)g * w->capacity + sample;
-
-        second[g] = weighted(w, g, c[-1] - 2 * c[0] + c[1]);
-    }
-    return dot_of(r, second, second);
-}
-
-/*
- * The most of that on a piece and its neighbours, which a line between two setpoints may reach
- * into.
- */
-static float second_around(const struct window *w, const struct route *r, unsigned piece)
-{
-    const unsigned end = piece + 5 < w->count ? piece + 4 : w->count - 1;
-    float most = 0.0f;
-
-    for (unsigned i = piece > 0 ? piece : 1; i < end; i++) {
-        most = single_max(most, second_square(w, r, i));
-    }
-    return single_sqrt(most);
 }
 
 /*
@@ -114,7 +67,7 @@ static float second_across(const struct window *w, const struct route *r, unsign
     float most = 0.0f;
 
     steps_of(w, r, piece, &s);
-    const float way = dot_of(r, s.way, s.way);
+    const float way = route_dot(r, s.way, s.way);
     const float turn = single_sqrt(turn_square(r, &s));
 
     for (unsigned k = 0; k < 2; k++) {
@@ -123,9 +76,9 @@ static float second_across(const struct window *w, const struct route *r, unsign
         for (unsigned g = 0; g < r->slots.groups; g++) {
             second[g] = s.step[k + 1][g] - s.step[k][g];
         }
-        const float square = dot_of(r, second, second);
+        const float square = route_dot(r, second, second);
         const float along =
-            way > 0.0f ? single_abs(dot_of(r, second, s.way)) / single_sqrt(way) : 0.0f;
+            way > 0.0f ? single_abs(route_dot(r, second, s.way)) / single_sqrt(way) : 0.0f;
         const float across = single_sqrt(single_max(0.0f, square - along * along));
 
         most = single_max(most, across + turn * along);
@@ -137,13 +90,13 @@ static float second_across(const struct window *w, const struct route *r, unsign
 struct look {
     unsigned places;
     float within_mm;
-    float corner_mm; /* how near chords between them must be to corners */
+    float corner_mm; /* how near chords between them must be to corners and bends */
 };
 
 /*
  * Between two places that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at
  * most. So many are looked at that this takes no more than the part that is not verified. The lines
- * through setpoints, a cycle apart, leave corners by |x''| cycle^2/8 more.
+ * through setpoints, a cycle apart, leave corners by more (chord.h).
  */
 static struct look look_of(const struct window *w, const struct route *r, unsigned piece)
 {
@@ -159,7 +112,7 @@ static struct look look_of(const struct window *w, const struct route *r, unsign
     const float off = second / (8.0f * (float)(look.places * look.places));
 
     look.within_mm = single_min(JUDGED * tolerance_mm, tolerance_mm - off);
-    look.corner_mm = look.within_mm - second_around(w, r, piece) * r->chord_per_second;
+    look.corner_mm = look.within_mm - takt_chord_leaves(w, r, piece);
     return look;
 }
 
@@ -196,7 +149,8 @@ static float beyond_of(const struct window *w, const struct route *r, unsigned p
     TAKT_ASSERT(place <= look.places);
     takt_window_weights((float)place / (float)look.places, weight);
     find_closest(w, r, piece, weight, &closest);
-    return closest.distance_mm - look.within_mm;
+    return closest.distance_mm -
+           (route_element(r, closest.element)->curved ? look.corner_mm : look.within_mm);
 }
 
 /* From one place looked at to the next one. */

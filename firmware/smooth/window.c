@@ -26,8 +26,8 @@
 #define NEAR_CORNER 3.0f
 
 /*
- * A window as long as the fastest feed makes it takes this many units; coordinates may be a few
- * times that.
+ * A window as long as it can be, and the tolerance that it may begin off the route, take this many
+ * units; coordinates may be a few times that.
  */
 #define UNITS 268435456.0
 
@@ -49,6 +49,9 @@ void takt_window_weights(float f, float weight[4])
     weight[3] = f * f * f * (1.0f / 6.0f);
 }
 
+/* From one sample to the next one the feed is at least this part of A d, or of J d^2. */
+#define LEAST_PART 0.25f
+
 /* The largest power of two of which UNITS are at least this long. */
 static double unit_for(double length_mm)
 {
@@ -64,6 +67,17 @@ static double unit_for(double length_mm)
     return unit;
 }
 
+/*
+ * From one sample to the next one, at the highest feed or at the least one: V d, or a part of A d^2
+ * or J d^3.
+ */
+static float step_most(const struct route_slots *slots, unsigned slot, float d)
+{
+    const float least = single_min(slots->acceleration_mm_s2[slot], slots->jerk_mm_s3[slot] * d);
+
+    return single_max(slots->velocity_mm_s[slot], LEAST_PART * least * d) * d;
+}
+
 void takt_window_init(struct window *w, const struct route *r, double interval_s)
 {
     TAKT_ASSERT(interval_s > 0.0 && r->slots.groups >= 1 && r->slots.groups <= SMOOTH_GROUPS_MAX);
@@ -75,8 +89,9 @@ void takt_window_init(struct window *w, const struct route *r, double interval_s
     memset(w->x, 0, sizeof w->x);
     memset(w->weighted_unit_mm, 0, sizeof w->weighted_unit_mm);
     for (unsigned i = 0; i < r->slots.count; i++) {
-        w->unit_mm[i] =
-            unit_for((double)(r->slots.velocity_mm_s[i] * (float)w->capacity) * interval_s);
+        const double step = (double)step_most(&r->slots, i, (float)interval_s);
+
+        w->unit_mm[i] = unit_for(step * w->capacity + r->tolerance_mm / (double)r->slots.weight[i]);
         w->weighted_unit_mm[i] = r->slots.weight[i] * (float)w->unit_mm[i];
     }
 }
@@ -227,7 +242,7 @@ static double next_place(const struct window *w, const struct route *r)
     struct going g = {w->element[w->count - 1], step / d,
                       (step - (float)(at[-1] - at[-2])) / (d * d)};
     const struct braking_limits *along = &route_element(r, g.element)->along;
-    const float least = 0.25f * single_min(along->acceleration, along->jerk * d) * d;
+    const float least = LEAST_PART * single_min(along->acceleration, along->jerk * d) * d;
     float low = -1.0f;
     float high = 1.0f;
 

@@ -76,6 +76,12 @@ static inline int32_t window_x(const struct window *w, unsigned slot, unsigned i
     return w->x[slot / SMOOTH_LANES * w->capacity + i][slot % SMOOTH_LANES];
 }
 
+/* Differences of coordinates in what they count in a distance. */
+static inline lanes window_weighted(const struct window *w, unsigned group, lanes_int units)
+{
+    return lanes_at(&w->weighted_unit_mm[(size_t)group * SMOOTH_LANES]) * lanes_of(units);
+}
+
 void takt_window_set(struct window *w, const struct route *r, unsigned i,
                      const struct window_spot *s);
 /* Is a sample there, but for the rounding of coordinates? */

@@ -52,6 +52,8 @@ hunt("a thousand cycles of braking end no harder for rounding", "1", "3304948", 
 hunt("units of path do not show in the acceleration of a slow rotary axis", "1", "3203788", "--hands")
 hunt("a motion of the path itself behind one that was told already is a part of that, by override", "1", "3103708", "--operator")
 hunt("and by single block", "1", "3201813", "--hands")
+hunt("a window has all places that its samples may be at, where an axis reaches its velocity at once", "1", "5501675", "--kinds", KINDS)
+hunt("lines through setpoints leave no arc by more than the tolerance", "1", "7700645", "--kinds", KINDS)
 hunt("single block and holds at any cycle break nothing", "12", "1060001", "--hands", "--kinds", KINDS)
 hunt("nor does the end of a run at any", "12", "3600001", "--ends", "--kinds", KINDS)
 t.finish()
