@@ -34,14 +34,9 @@ static float length_of(const struct route *r, uint32_t index)
     return (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
 }
 
-/*
- * v <= V/|x_s|, sqrt(A/|x_ss|), cbrt(J/|x_sss|) on every axis; of A no more than the lines through
- * setpoints may leave the curve for.
- */
-static float feed_of(const struct curve_bounds *b, const struct route *r)
+/* v <= V/|x_s|, sqrt(A/|x_ss|), cbrt(J/|x_sss|) on every axis. */
+static float feed_of(const struct curve_bounds *b, const struct route_slots *slots)
 {
-    const struct route_slots *slots = &r->slots;
-    const float chord = SMOOTH_CHORD_PART * (float)r->tolerance_mm / r->chord.per_acceleration;
     float feed = SINGLE_INFINITY;
 
     for (unsigned i = 0; i < slots->count; i++) {
@@ -53,10 +48,7 @@ static float feed_of(const struct curve_bounds *b, const struct route *r)
             feed = single_min(feed, slots->velocity_mm_s[i] / first);
         }
         if (second > 0.0f) {
-            const float a =
-                single_min(CURVED * slots->acceleration_mm_s2[i], chord / slots->weight[i]);
-
-            feed = single_min(feed, single_sqrt(a / second));
+            feed = single_min(feed, single_sqrt(CURVED * slots->acceleration_mm_s2[i] / second));
         }
         if (third > 0.0f) {
             feed = single_min(feed, takt_single_cbrt(CURVED * slots->jerk_mm_s3[i] / third));
@@ -103,7 +95,7 @@ void takt_nominal_set(struct route_element *e, const struct curve *curve, float 
     struct curve_bounds b;
 
     takt_curve_bound(curve, &b);
-    const float feed = single_min(e->programmed_mm_s, feed_of(&b, r));
+    const float feed = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
 
     e->feed_mm_s = per_mm * feed;
     e->along.acceleration = per_mm * along_of(&b, &r->slots, feed);

@@ -15,7 +15,6 @@
 
 #include "base/assert.h"
 #include "smooth/bands.h"
-#include "smooth/chord.h"
 #include "smooth/relax_corners.h"
 #include "smooth/relax_scale.h"
 #include "smooth/single.h"
@@ -66,19 +65,6 @@ static void look_ahead(struct relax_ahead *a, const struct route *r,
     }
 }
 
-/* How near to the route sample i must be; beside a bend the lines through setpoints take a part. */
-static float tube_of(const struct window *w, const struct route *r, unsigned i,
-                     const struct route_closest *closest, float radius_mm, float tolerance_mm)
-{
-    if (!route_element(r, closest->element)->curved) {
-        return tolerance_mm;
-    }
-    const float part =
-        single_max(1.0f - SMOOTH_CHORD_PART, 1.0f - takt_chord_leaves(w, r, i - 1) / tolerance_mm);
-
-    return single_min(part * tolerance_mm, TUBE_OF_RADIUS * radius_mm);
-}
-
 /* The route beside sample i: the nearest point, and as far as the direction there serves for it. */
 static void set_closest(struct relax *x, const struct window *w, const struct route *r, unsigned i,
                         float tolerance_mm, struct relax_ahead *ahead)
@@ -95,11 +81,9 @@ static void set_closest(struct relax *x, const struct window *w, const struct ro
     takt_window_place(w, r, &spot, p);
     takt_route_closest(r, p, from, to, &closest);
     look_ahead(ahead, r, &closest, tolerance_mm);
-    const float radius_mm = takt_route_radius(r, closest.element, closest.at_mm);
-    const float tube_mm = tube_of(w, r, i, &closest, radius_mm, tolerance_mm);
-    const float straight = tube_mm < (1.0f - CURVED) * tolerance_mm
-                               ? 0.0f
-                               : single_sqrt(2.0f * CURVED * radius_mm / tolerance_mm);
+    const float radius = takt_route_radius(r, closest.element, closest.at_mm) / tolerance_mm;
+    const float straight =
+        TUBE_OF_RADIUS * radius < 1.0f ? 0.0f : single_sqrt(2.0f * CURVED * radius);
     const double start = maths_max(from, route_element(r, closest.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, closest.element));
 
@@ -216,8 +200,8 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
     }
     takt_window_reach(w, i, &from, &to);
     takt_route_closest(r, p, from, to, &closest);
-    const float radius_mm = takt_route_radius(r, closest.element, closest.at_mm);
-    const float tube_mm = tube_of(w, r, i, &closest, radius_mm, tolerance_mm);
+    const float tube_mm = single_min(
+        tolerance_mm, TUBE_OF_RADIUS * takt_route_radius(r, closest.element, closest.at_mm));
     const float less = closest.distance_mm > tube_mm ? 1.0f - tube_mm / closest.distance_mm : 0.0f;
 
     for (unsigned k = 0; k < r->slots.count; k++) {

@@ -32,7 +32,6 @@ void takt_route_init(struct route *r, const struct smooth_limits *limits, double
 {
     set_slots(&r->slots, limits);
     r->tolerance_mm = tolerance_mm;
-    r->chord.per_acceleration = (float)(limits->cycle_s * limits->cycle_s / 8.0);
     r->moved = 0;
     r->part = 1.0f;
     r->first = 0;

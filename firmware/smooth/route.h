@@ -81,14 +81,10 @@ struct route_mode {
     unsigned used; /* elements of it */
 };
 
-/* Lines through setpoints, a cycle apart, take this part of the tolerance at most beside a bend. */
-#define SMOOTH_CHORD_PART 0.5f
-
-/* How they leave the curve. */
+/* How lines through setpoints, a cycle apart, leave the curve. */
 struct chord_reach {
-    float per_acceleration; /* cycle^2/8 */
-    float per_second;       /* by so much of c_0 - 2 c_1 + c_2 at most: cycle^2/8 d^2 */
-    unsigned pieces; /* into so many before one, and behind it, a line reaches that is in it */
+    float per_second; /* by so much of c_0 - 2 c_1 + c_2 at most: cycle^2/8 d^2 */
+    unsigned pieces;  /* into so many before one, and behind it, a line reaches that is in it */
 };
 
 struct route {

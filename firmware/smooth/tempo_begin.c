@@ -2,7 +2,6 @@
 #include "smooth/tempo_begin.h"
 
 #include "base/assert.h"
-#include "smooth/chord.h"
 #include "smooth/single.h"
 #include "smooth/verifier.h"
 
@@ -12,17 +11,6 @@
  */
 #define THIRD_PART      0.95f
 #define THIRD_OF_SECOND 0.5f
-
-/* How fast a piece beside a bend may be for the lines through setpoints. */
-static float chord_rate(const struct window *w, const struct route *r, unsigned piece)
-{
-    const float leaves = takt_chord_leaves(w, r, piece);
-
-    if (!route_element(r, w->element[piece + 1])->curved || !(leaves > 0.0f)) {
-        return SINGLE_INFINITY;
-    }
-    return single_sqrt(SMOOTH_CHORD_PART * (float)r->tolerance_mm / leaves);
-}
 
 /* b <= (V/x')^2 and (F/|x'|)^2 of every piece that the coefficient belongs to. */
 static void set_most(struct tempo *p, const struct window *w, const struct route *r)
@@ -37,7 +25,6 @@ static void set_most(struct tempo *p, const struct window *w, const struct route
         float feed = single_min(single_sqrt(RATE_SQUARED_MOST),
                                 takt_verifier_programmed(&need, r, w->element[i + 1]));
 
-        feed = single_min(feed, chord_rate(w, r, i));
         for (unsigned k = 0; k < r->slots.count; k++) {
             if (feed * need.first[k] > r->slots.velocity_mm_s[k]) {
                 feed = r->slots.velocity_mm_s[k] / need.first[k];

@@ -149,8 +149,7 @@ static float beyond_of(const struct window *w, const struct route *r, unsigned p
     TAKT_ASSERT(place <= look.places);
     takt_window_weights((float)place / (float)look.places, weight);
     find_closest(w, r, piece, weight, &closest);
-    return closest.distance_mm -
-           (route_element(r, closest.element)->curved ? look.corner_mm : look.within_mm);
+    return closest.distance_mm - look.within_mm;
 }
 
 /* From one place looked at to the next one. */

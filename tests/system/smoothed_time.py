@@ -26,7 +26,8 @@ import hunt_programs
 FIRST = 880001
 # Strokes are longer by this at most.
 STROKES_MOST = 1.15
-# Ever wider tolerances, each of which leaves a way that is as short, make them slower by this at most.
+# Ever wider tolerances, each of which leaves a way that is as short, make the longest ones slower by this at most; others by no more
+# than 1 %.
 STROKES_WIDER = 1.1
 # Of random programs this part is slower, and by this at most.
 SLOWER_PART = 0.05
@@ -80,8 +81,9 @@ def small_strokes_have_no_use_for_more_tolerance(acceleration, jerk, quickest):
     machine = hunt_programs.Machine({a: (100.0, acceleration, jerk) for a in "XYZ"}, 1000)
     for size, most in quickest.items():
         times = [time_of(strokes(part * size, size), machine) for part in (2, 5, 10, 50)]
-        falls = all(later <= STROKES_WIDER * before + 0.003 for before, later in zip(times, times[1:]))
-        t.check(falls, f"strokes of {size} mm are hardly slower for more tolerance: {acceleration} mm/s2, {jerk} mm/s3", times)
+        wider_most = STROKES_WIDER if size == 1.0 else 1.01
+        falls = all(later <= wider_most * before + 0.003 for before, later in zip(times, times[1:]))
+        t.check(falls, f"strokes of {size} mm are no slower for more tolerance: {acceleration} mm/s2, {jerk} mm/s3", times)
         t.check(max(times[1:]) <= most, f"strokes of {size} mm are as short as the way needs: {acceleration} mm/s2, {jerk} mm/s3", times)
 
 
