@@ -71,10 +71,8 @@ float takt_fill_useful(const struct smooth *s)
 void takt_fill_within(struct smooth *s, float part, float fine)
 {
     TAKT_ASSERT(part > 0.0f && part <= 1.0f && fine > 0.0f && fine <= 1.0f);
-    if (s->route.part < part || s->route.part > part) {
-        s->route.part = part;
-        takt_nominal_again(&s->route);
-    }
+    s->route.part = part;
+    takt_nominal_again(&s->route);
     set_interval(s, fine);
     s->window.count = SMOOTH_FIXED;
 }

@@ -1,9 +1,7 @@
-/* The search for a curve in the window: relaxed, timed, verified, and from rest in parts of P. */
+/* The search for a curve in the window: relaxed, timed and verified. */
 #include "smooth/search.h"
 
 #include "base/assert.h"
-#include "base/maths.h"
-#include "smooth/fill.h"
 #include "smooth/piece.h"
 #include "smooth/single.h"
 
@@ -16,23 +14,6 @@
 
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
-
-/* From rest a curve is also looked for in narrower parts of the tolerance. */
-#define PARTS 3U
-static const float parts[PARTS] = {0.25f, 0.5f, 1.0f};
-
-/* And in ever narrower ones as long as that is quicker. */
-#define PART_LEAST (1.0f / 64.0f)
-
-/* And at ever shorter intervals where the chain's end is in the window. */
-#define FINE_LEAST (1.0f / 32.0f)
-#define FINER      0.70710678f
-
-/*
- * Where the chain goes on behind the window, a narrower one must be quicker by this: longer
- * intervals reach farther ahead.
- */
-#define CLEARLY 0.85f
 
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
@@ -194,8 +175,7 @@ static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned
     s->proved = good - s->ready;
 }
 
-/* From nothing but what is kept. */
-static void search_anew(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
+void takt_search_anew(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     s->window.count = SMOOTH_FIXED;
     s->window.at_end = false;
@@ -211,127 +191,19 @@ void takt_search_on(struct smooth *s, union smooth_scratch *scratch, struct veri
 {
     search_way(s, scratch, ROUNDS, v);
     if (takt_search_is_stuck(s)) {
-        search_anew(s, scratch, v);
+        takt_search_anew(s, scratch, v);
     }
 }
 
-/*
- * How long the curve that was found seems to take to the end of what is known, by its time up to
- * until_mm, or to the end of its pieces if that is sooner: there until_mm is then.
- */
-static float found_time(struct smooth *s, union smooth_scratch *scratch, double *until_mm)
+void takt_search_follow(struct smooth *s, const struct verifier_verdict *v)
 {
-    struct worth_window now = takt_search_asked(s, scratch);
-
-    if (takt_search_is_stuck(s)) {
-        return SINGLE_INFINITY;
+    TAKT_ASSERT(s->ready > 0 && s->ready + 1 < s->window.count);
+    if (s->ready == v->followed && !s->stops) {
+        s->order = v->order;
+    } else {
+        takt_verifier_order(&s->window, &s->route, s->ready, &s->order);
     }
-    while (now.pieces > 1 && s->window.at_mm[now.pieces + 1] > *until_mm) {
-        now.pieces--;
+    if (s->order.count == 0) {
+        takt_order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
     }
-    *until_mm = s->window.at_mm[now.pieces + 1];
-    return takt_worth_time(&now);
-}
-
-/* A curve is looked for in a part of the tolerance, at so much of that one's interval. */
-struct trial {
-    float part;
-    float fine;
-};
-
-/* What has been tried, and the quickest of it. */
-struct trials {
-    double until_mm; /* all are known to here */
-    struct trial best;
-    float least; /* its time */
-    bool whole;  /* it comes to the end of the chain */
-    float top;   /* the widest part that is of any use */
-};
-
-/* The time of the curve that is found so. */
-static float try_one(struct smooth *s, union smooth_scratch *scratch, const struct trial *now,
-                     double *until_mm, struct verifier_verdict *v)
-{
-    takt_fill_within(s, now->part, now->fine);
-    search_anew(s, scratch, v);
-    return found_time(s, scratch, until_mm);
-}
-
-/* Is one quicker than what was the quickest so far? A narrower one by so much. */
-static bool is_quicker(struct smooth *s, union smooth_scratch *scratch, struct trial now,
-                       struct trials *all, struct verifier_verdict *v)
-{
-    const float time = try_one(s, scratch, &now, &all->until_mm, v);
-    const bool whole = takt_search_is_end(s, s->ready);
-    const float margin = whole ? 1.0f : CLEARLY;
-    const bool wider = now.part > all->best.part;
-
-    if (wider ? margin * time >= all->least : time >= margin * all->least) {
-        return false;
-    }
-    all->best = now;
-    all->least = time;
-    all->whole = whole;
-    return true;
-}
-
-/* The same of a chain all of which is in the window. */
-static bool is_quicker_whole(struct smooth *s, union smooth_scratch *scratch, struct trial now,
-                             struct trials *all, struct verifier_verdict *v)
-{
-    double until_mm = MATHS_INFINITY;
-    const float time = try_one(s, scratch, &now, &until_mm, v);
-
-    if (!takt_search_is_end(s, s->ready) || time >= all->least) {
-        return false;
-    }
-    all->best = now;
-    all->least = time;
-    return true;
-}
-
-/*
- * A chain that ends in the window may have so few samples that it takes the longer the farther they
- * are apart.
- */
-static void search_finer(struct smooth *s, union smooth_scratch *scratch, struct trials *all,
-                         struct verifier_verdict *v)
-{
-    const struct trial wide = {all->top, single_sqrt(all->best.part / all->top)};
-
-    all->least = SINGLE_INFINITY;
-    (void)is_quicker_whole(s, scratch, all->best, all, v);
-    if (all->best.part < all->top) {
-        (void)is_quicker_whole(s, scratch, wide, all, v);
-    }
-    while (all->best.fine > FINE_LEAST) {
-        const struct trial finer = {all->best.part, FINER * all->best.fine};
-
-        if (!is_quicker_whole(s, scratch, finer, all, v)) {
-            return;
-        }
-    }
-}
-
-/*
- * What is found in a part of the tolerance is within all of it, and often the quicker: so the
- * quickest is taken.
- */
-void takt_search_from_rest(struct smooth *s, union smooth_scratch *scratch,
-                           struct verifier_verdict *v)
-{
-    const float top = takt_fill_useful(s);
-    struct trials all = {MATHS_INFINITY, {top, 1.0f}, SINGLE_INFINITY, false, top};
-
-    for (unsigned i = 0; i < PARTS; i++) {
-        (void)is_quicker(s, scratch, (struct trial){top * parts[i], 1.0f}, &all, v);
-    }
-    for (float part = 0.5f * top * parts[0];
-         all.best.part <= 2.0f * part && part >= top * PART_LEAST; part *= 0.5f) {
-        (void)is_quicker(s, scratch, (struct trial){part, 1.0f}, &all, v);
-    }
-    if (all.whole) {
-        search_finer(s, scratch, &all, v);
-    }
-    (void)try_one(s, scratch, &all.best, &all.until_mm, v);
 }

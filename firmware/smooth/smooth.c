@@ -7,6 +7,7 @@
 #include "smooth/piece.h"
 #include "smooth/search.h"
 #include "smooth/single.h"
+#include "smooth/trials.h"
 #include "smooth/worth.h"
 
 /* What a microcontroller is ready to give for smoothing. */
@@ -26,23 +27,6 @@ static void fall_back(struct smooth *s)
     takt_head_take(&s->head, &s->window, &s->route);
 }
 
-/*
- * The order goes on to the end of what is handed on; where the axes went back to the route it
- * begins there.
- */
-static void follow_ready(struct smooth *s, const struct verifier_verdict *v)
-{
-    TAKT_ASSERT(s->ready > 0 && s->ready + 1 < s->window.count);
-    if (s->ready == v->followed && !s->stops) {
-        s->order = v->order;
-    } else {
-        takt_verifier_order(&s->window, &s->route, s->ready, &s->order);
-    }
-    if (s->order.count == 0) {
-        takt_order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
-    }
-}
-
 /* The path itself is taken from where the axes rest: to that place at least. */
 static void take_path(struct smooth *s, double to_mm)
 {
@@ -55,30 +39,30 @@ static void take_path(struct smooth *s, double to_mm)
     s->window.at_end = false;
 }
 
-/* From rest every way is open: is the path itself the quicker, or the only one? to_mm: to there. */
-static bool prefers_path(const struct smooth *s, union smooth_scratch *scratch, double *to_mm)
+/* From rest every way is open: the path itself is taken where it is the quicker, or the only one. */
+static void choose_from_rest(struct smooth *s, union smooth_scratch *scratch,
+                             const struct worth_far *curve)
 {
     const struct worth_window now = takt_search_asked(s, scratch);
-    struct worth_since since = s->since;
+    double to_mm;
+    const bool quicker = takt_worth_path_from_rest(&now, curve, &to_mm);
+    const bool slower = takt_worth_path(&now, &s->since);
 
-    return takt_worth_path_from_rest(&now, to_mm) || takt_worth_path(&now, &since) ||
-           takt_search_is_stuck(s);
+    if (quicker || slower || takt_search_is_stuck(s)) {
+        take_path(s, to_mm);
+    }
 }
 
 /*
- * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved
- * last is gone to its end; and from rest, where every way is open again, the path itself is taken.
+ * Where the window does not go on, or the path itself is quicker, what was proved last is gone to
+ * its end.
  */
 static void choose(struct smooth *s, union smooth_scratch *scratch)
 {
     const struct worth_window now = takt_search_asked(s, scratch);
-    double to_mm;
-    const bool path = now.starts && prefers_path(s, scratch, &to_mm);
     const bool slower = takt_worth_path(&now, &s->since);
 
-    if (path) {
-        take_path(s, to_mm);
-    } else if (!now.starts && (takt_search_is_stuck(s) || slower)) {
+    if (takt_search_is_stuck(s) || slower) {
         fall_back(s);
     }
 }
@@ -95,12 +79,14 @@ static bool next_window(struct smooth *s, union smooth_scratch *scratch)
     }
     if (goes_on) {
         takt_search_on(s, scratch, &v);
+        choose(s, scratch);
     } else {
-        takt_search_from_rest(s, scratch, &v);
+        const struct worth_far curve = takt_trials_from_rest(s, scratch, &v);
+
+        choose_from_rest(s, scratch, &curve);
     }
-    choose(s, scratch);
     if (s->ready > 0) {
-        follow_ready(s, &v);
+        takt_search_follow(s, &v);
     }
     return true;
 }

@@ -131,14 +131,13 @@ static uint32_t rest_before(const struct worth_window *now, uint32_t element, ui
 }
 
 /*
- * From rest at the start of an element to where the pieces end: of the way between two rests a
- * part.
+ * From rest at the start of an element to a place: of the way between two rests a part.
  */
-static float path_time(const struct worth_window *now, uint32_t first)
+static float path_time(const struct worth_window *now, uint32_t first, double at_mm)
 {
     const struct route *r = now->route;
-    const double at_mm = now->window->at_mm[now->pieces + 1];
-    const uint32_t last = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
+    const uint32_t found = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
+    const uint32_t last = found > first ? found : first;
     const uint32_t from = rest_before(now, last, first);
     const uint32_t to = next_rest(now, last);
     const double start_mm = route_element(r, from)->start_mm;
@@ -177,28 +176,28 @@ static float time_of_all(const struct worth_window *now, float times)
     return (now->finished ? 2.0f : 1.0f) * now->rest_s + times * path_time_of_all(now);
 }
 
-/* What the pieces take, as a part of the path's time to where they end. */
-static float times_path(const struct worth_window *now, struct passed *last)
-{
-    return (go(now, 1.0f, last) - now->rest_s) / path_time(now, now->window->element[0]);
-}
-
-float takt_worth_time(const struct worth_window *now)
+void takt_worth_run(const struct worth_window *now, float rate, struct worth_run *run)
 {
     struct passed last;
 
-    return time_of_all(now, times_path(now, &last));
+    TAKT_ASSERT(now->pieces > 0 && now->kept <= now->pieces);
+    run->time_s = go(now, rate, &last);
+    run->kept_s = last.kept;
+    run->rate = last.rate;
 }
 
-bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm)
+bool takt_worth_path_from_rest(const struct worth_window *now, const struct worth_far *curve,
+                               double *to_mm)
 {
     const struct route *r = now->route;
     const double end_mm = takt_route_end(r);
-    const bool whole = now->finished && now->window->at_mm[now->pieces + 1] == end_mm;
+    const bool whole = curve->to_mm >= end_mm && now->finished;
+    const float times = (curve->time_s - now->rest_s) /
+                        path_time(now, now->window->element[0], maths_min(curve->to_mm, end_mm));
     struct passed last;
-    const float times = times_path(now, &last);
 
-    *to_mm = whole || last.element == r->count ? end_mm : route_element(r, last.element)->start_mm;
+    (void)go(now, 1.0f, &last);
+    *to_mm = last.element == r->count ? end_mm : route_element(r, last.element)->start_mm;
     if (now->finished || last.time > 0.0f) {
         return path_time_of_all(now) < time_of_all(now, whole ? times : LONGER * times);
     }
@@ -225,5 +224,5 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 
     since->rate = last.rate;
     since->spent_s += last.kept;
-    return path_time(now, first) + change < spent + time;
+    return path_time(now, first, w->at_mm[now->pieces + 1]) + change < spent + time;
 }

@@ -40,16 +40,30 @@ struct worth_since {
     float rate; /* of nominal time where what was handed on last ends */
 };
 
+/* A curve gone along from rest: to a place of the route, or to rest at the chain's end. */
+struct worth_far {
+    double to_mm; /* MATHS_INFINITY: to rest */
+    float time_s;
+};
+
+/* What they take; and those that are kept, with the rate of nominal time where these end. */
+struct worth_run {
+    float time_s;
+    float kept_s;
+    float rate;
+};
+
 /*
  * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place
  * in the window where it rests? to_mm: that place, or the next one where there is none.
  */
-bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm);
+bool takt_worth_path_from_rest(const struct worth_window *now, const struct worth_far *curve,
+                               double *to_mm);
 /*
- * From rest: how long a curve takes to the end of what is known, if it takes as large a part of the
- * path's time as on its pieces.
+ * The pieces gone along at no higher rate than this where they begin, from rest: at any; to the end
+ * of the last one.
  */
-float takt_worth_time(const struct worth_window *now);
+void takt_worth_run(const struct worth_window *now, float rate, struct worth_run *run);
 /*
  * Is the path so much quicker to where the pieces end, with what has been taken on the first
  * stretch before, that a change is worth it?

@@ -48,7 +48,7 @@ def wide_machine(r):
                 own = max(own, JERK_MM / (1e-6 * cycle_us) ** 3)
             slowest = min(slowest, own) if key == "max_velocity_mm_s" else slowest
             options += ["--set", f"axis.{axis}.{key}={own:.6g}"]
-        for setting in ("drive_type=step", "steps_per_mm=1", "step_rate_max_hz=1e7", "following_error_max_mm=0"):
+        for setting in ("drive_type=step", "steps_per_mm=1", "following_error_max_mm=0"):
             options += ["--set", f"axis.{axis}.{setting}"]
     return options, slowest, 1e-6 * max(cycle_us, 2000)
 
@@ -126,7 +126,7 @@ def quanta_fit_the_axis_of_least_jerk():
     for axis, values in limits.items():
         for key, value in zip(("velocity_mm_s", "acceleration_mm_s2", "jerk_mm_s3"), values):
             options += ["--set", f"axis.{axis}.max_{key}={value}"]
-        for setting in ("drive_type=step", "steps_per_mm=1", "step_rate_max_hz=1e7", "following_error_max_mm=0"):
+        for setting in ("drive_type=step", "steps_per_mm=1", "following_error_max_mm=0"):
             options += ["--set", f"axis.{axis}.{setting}"]
     path = t.write("quanta.ngc", "G21 G90 G64 P0.288606 F8.22\nG0 X0.16709 Y-0.20214\nG1 X1.00043 Y1.22023\nM2\n")
     exact_s, ahead_s = (run(path, *way, *options)["program_time_s"] for way in (("--exact-path",), ("--plan", "ahead")))

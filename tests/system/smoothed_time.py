@@ -30,10 +30,10 @@ STROKES_MOST = 1.15
 # than 1 %.
 STROKES_WIDER = 1.1
 # Of random programs this part is slower, and by this at most.
-SLOWER_PART = 0.05
-SLOWER_MOST = 1.6
-WIDER_PART = 0.15
-WIDER_MOST = 2.0
+SLOWER_PART = 0.02
+SLOWER_MOST = 1.2
+WIDER_PART = 0.1
+WIDER_MOST = 1.6
 
 CORNERS = ((4, 1), (1, 3), (6, 4), (2, 6), (7, 7))
 
@@ -126,10 +126,22 @@ def joints_that_are_not_worth_passing_are_rests():
 
 def what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker():
     """In all of it only a slower curve is found: so a doubled tolerance made them up to 1.9 times slower."""
-    for seed in (110083, 110170, 330059, 330266, 550099, 550101, 660303, 880036, 880252):
+    for seed in (110083, 110170, 330059, 330266, 550099, 550101, 660303, 880252):
         program, machine = draw(seed)
         time_s, wide_s = time_of(program, machine), time_of(wider(program), machine)
         t.check(wide_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled tolerance makes it no slower: {seed}", wide_s, time_s)
+
+
+def trials_are_gone_along_beyond_the_first_window():
+    """Where they were told by one window a doubled tolerance took up to 1.6 times as long, and curves 1.5 times as long as the path."""
+    for seed in (110139, 110298, 330267, 550103, 550108, 660060, 880180):
+        program, machine = draw(seed)
+        time_s, wide_s = time_of(program, machine), time_of(wider(program), machine)
+        t.check(wide_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled tolerance makes a longer one no slower: {seed}", wide_s, time_s)
+    for seed in (330164, 660283, 660395):
+        program, machine = draw(seed)
+        exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
+        t.check(time_s <= 1.01 * exact_s, f"the quicker of a longer curve and the path is taken: {seed}", time_s, exact_s)
 
 
 def short_chains_stand_no_longer_by_a_higher_acceleration():
@@ -190,6 +202,7 @@ def as_cam_systems_write():
 
 
 what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker()
+trials_are_gone_along_beyond_the_first_window()
 as_cam_systems_write()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()

@@ -33,7 +33,7 @@ class Machine:
             unit = "mm" if letter in hunt_path.LINEAR else "deg"
             keys = (f"max_velocity_{unit}_s", f"max_acceleration_{unit}_s2", f"max_jerk_{unit}_s3")
             rows += [f"[axis {letter}]", f"drive_node = {node}"]
-            rows += [] if self.on_can else ["drive_type = step", f"steps_per_{unit} = 1", "step_rate_max_hz = 1e7"]
+            rows += [] if self.on_can else ["drive_type = step", f"steps_per_{unit} = 1"]
             rows += [f"increments_per_{unit} = 1000", f"travel_min_{unit} = {-TRAVEL}", f"travel_max_{unit} = {TRAVEL}"]
             rows += [f"following_error_max_{unit} = 0"] + [f"{key} = {value!r}" for key, value in zip(keys, limits)]
         return "\n".join(rows) + "\n"
