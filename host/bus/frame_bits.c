@@ -34,15 +34,21 @@ static uint16_t checksum_of_byte(unsigned byte)
     return (uint16_t)remainder;
 }
 
+/* Parts of an octet of the table. */
+#define VALUE    0x08u
+#define STATE    0x3Fu
+#define STUFFED  0xC0u
+#define ONE_MORE 6 /* a stuffed bit is 1 << this */
+
 static unsigned state_of(unsigned run, unsigned value)
 {
-    return run << 1 | value;
+    return (run - 1) << 4 | value << 3;
 }
 
 /* The low bits of value after a state; a stuffed bit begins a run of its own value. */
-static uint8_t stuffing_of_bits(unsigned state, unsigned bits_of, unsigned bits)
+static unsigned stuffing_of_bits(unsigned state, unsigned bits_of, unsigned bits)
 {
-    unsigned run = state >> 1, value = state & 1, stuffed = 0;
+    unsigned run = (state >> 4) + 1, value = state >> 3 & 1, stuffed = 0;
     while (bits-- > 0) {
         unsigned next = bits_of >> bits & 1;
         run = next == value ? run + 1 : 1;
@@ -53,7 +59,7 @@ static uint8_t stuffing_of_bits(unsigned state, unsigned bits_of, unsigned bits)
             value = !value;
         }
     }
-    return (uint8_t)(stuffed << 4 | state_of(run, value));
+    return stuffed << ONE_MORE | state_of(run, value);
 }
 
 /* The remainder of what has one byte more behind it. */
@@ -66,34 +72,39 @@ void frame_bits_init(struct frame_bits *tables)
 {
     for (unsigned byte = 0; byte < 256; byte++) {
         tables->checksum[0][byte] = checksum_of_byte(byte);
-        for (unsigned state = state_of(1, 0); state < state_of(RUN_TO_STUFF, 0); state++)
-            tables->stuffing[byte][state] = stuffing_of_bits(state, byte, 8);
+        tables->stuffing[byte] = 0;
+        for (unsigned state = 0; state <= STATE; state += VALUE)
+            tables->stuffing[byte] |= (uint64_t)stuffing_of_bits(state, byte, 8) << state;
     }
     for (unsigned behind = 1; behind < FRAME_BITS_SUMMED; behind++)
         for (unsigned byte = 0; byte < 256; byte++)
             tables->checksum[behind][byte] = push_on(tables, tables->checksum[behind - 1][byte]);
 }
 
-/* A stream of which the checksum and stuffing are known so far. */
+/*
+ * A stream of which the checksum and stuffing are known so far. octet: the last one; what is above
+ * it is others of its row. stuffed: as octets have it.
+ */
 struct stream_bits {
     const struct frame_bits *tables;
-    unsigned checksum, state, stuffed;
+    unsigned checksum, stuffed;
+    uint64_t octet;
 };
 
 static struct stream_bits begin_stream(const struct frame_bits *tables, unsigned state)
 {
-    return (struct stream_bits){.tables = tables, .state = state};
+    return (struct stream_bits){.tables = tables, .octet = state};
 }
 
-static void take_stuffing(struct stream_bits *stream, unsigned entry)
+static void take_stuffing(struct stream_bits *stream, uint64_t octet)
 {
-    stream->state = entry & 15u;
-    stream->stuffed += entry >> 4;
+    stream->octet = octet;
+    stream->stuffed += (unsigned)octet & STUFFED;
 }
 
 static void add_stuffing(struct stream_bits *stream, unsigned byte)
 {
-    take_stuffing(stream, stream->tables->stuffing[byte][stream->state]);
+    take_stuffing(stream, stream->tables->stuffing[byte] >> (stream->octet & STATE));
 }
 
 /*
@@ -118,23 +129,47 @@ static void add_data(struct stream_bits *stream, const uint8_t *data, unsigned l
     }
 }
 
+static unsigned stuffed_of(const struct stream_bits *stream)
+{
+    return stream->stuffed >> ONE_MORE;
+}
+
 /* Stuffed bits of the whole frame, its checksum included. */
 static unsigned count_stuffed(struct stream_bits *stream)
 {
     unsigned checksum = stream->checksum | (~stream->checksum >> 1 & 1u);
     add_stuffing(stream, checksum >> 8);
     add_stuffing(stream, checksum & 0xFF);
-    return stream->stuffed;
+    return stuffed_of(stream);
 }
 
 /* Start 0, identifier 11, RTR, IDE 0, r0 0, length 4: 19 bits, five put before them. */
-unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame)
+static inline unsigned count_of(const struct frame_bits *tables, const struct can_frame *frame,
+                                unsigned length)
 {
     struct stream_bits stream = begin_stream(tables, state_of(1, 0));
-    unsigned header = can_rank(frame->id) << 6 | frame->length, length = can_data_length(frame);
+    unsigned header = can_rank(frame->id) << 6 | frame->length;
     add_header(&stream, header, HEADER_PAD, HEADER_BYTES, length);
     add_data(&stream, frame->data, length);
     return UNSTUFFED + 8u * length + count_stuffed(&stream);
+}
+
+/* SYNC, and PDOs of a target, of a statusword and a position, and of two targets: without loops. */
+unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame)
+{
+    const unsigned length = can_data_length(frame);
+    switch (length) {
+    case 0:
+        return count_of(tables, frame, 0);
+    case 4:
+        return count_of(tables, frame, 4);
+    case 6:
+        return count_of(tables, frame, 6);
+    case 8:
+        return count_of(tables, frame, 8);
+    default:
+        return count_of(tables, frame, length);
+    }
 }
 
 /*
@@ -198,7 +233,8 @@ static unsigned fd_control(const struct wire_frame *frame)
 static void add_single_bits(struct stream_bits *stream, uint64_t value, unsigned bits)
 {
     while (bits-- > 0)
-        take_stuffing(stream, stuffing_of_bits(stream->state, (unsigned)(value >> bits) & 1, 1));
+        take_stuffing(stream, stuffing_of_bits((unsigned)stream->octet & STATE,
+                                               (unsigned)(value >> bits) & 1, 1));
 }
 
 /*
@@ -207,7 +243,7 @@ static void add_single_bits(struct stream_bits *stream, uint64_t value, unsigned
  */
 static bool is_stuffed_last(const struct stream_bits *stream, unsigned last)
 {
-    return (stream->state & 1u) != (last & 1u);
+    return ((stream->octet & VALUE) != 0) != (last & 1u);
 }
 
 static struct frame_length count_fd(const struct frame_bits *tables, const struct wire_frame *frame)
@@ -216,12 +252,12 @@ static struct frame_length count_fd(const struct frame_bits *tables, const struc
     const unsigned length = wire_frame_fd_length(frame->length), control = fd_control(frame);
     struct stream_bits stream = begin_stream(tables, state_of(1, 1));
     add_single_bits(&stream, fd_header(frame), header);
-    const unsigned early = stream.stuffed;
+    const unsigned early = stuffed_of(&stream);
     add_single_bits(&stream, control, FD_CONTROL);
     for (unsigned i = 0; i < length; i++)
         add_stuffing(&stream, frame->data[i]);
     const unsigned last = length > 0 ? frame->data[length - 1] : control;
-    const unsigned late = stream.stuffed - early - is_stuffed_last(&stream, last);
+    const unsigned late = stuffed_of(&stream) - early - is_stuffed_last(&stream, last);
     const struct frame_length bits = {header + early + FD_END,
                                       FD_CONTROL + 8u * length + late + crc_field(length) + 1u};
     return frame->flags & WIRE_RATE_SWITCH ? bits

@@ -23,16 +23,16 @@
  * in the upper 15 bits of 16: the remainder of several bytes is the sum (exclusive or) of what each
  * adds.
  *
- * state: bits 3 ... 1 the number of equal bits at the end of the stream (1 ... 4), bit 0 their
- * value. stuffing[byte][state] is the state after the byte in its lower four bits and the number of
- * bits stuffed (0 ... 2) above them.
+ * stuffing[byte] has an octet for each of eight states: the state after the byte in its lower six
+ * bits, and above them the number of bits stuffed, 0 ... 2. A state is where its own octet begins,
+ * so a byte is a shift; it says how many equal bits are at the end of the stream, 1 ... 4, and
+ * their value.
  */
-#define FRAME_BITS_STATES 16 /* those of runs of 1 ... 4 are used */
 #define FRAME_BITS_SUMMED 13 /* header with a 29-bit identifier, and data of a classical frame */
 
 struct frame_bits {
     uint16_t checksum[FRAME_BITS_SUMMED][256];
-    uint8_t stuffing[256][FRAME_BITS_STATES];
+    uint64_t stuffing[256];
 };
 
 void frame_bits_init(struct frame_bits *tables);
