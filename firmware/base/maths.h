@@ -10,6 +10,7 @@
 #define TAKT_BASE_MATHS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #define MATHS_INFINITY (__builtin_inf())
 
@@ -57,6 +58,18 @@ double takt_maths_floor(double x);
 double takt_maths_ceil(double x);
 /* Nearest integer, halves away from zero (what part programs call ROUND). Exact. */
 double takt_maths_round(double x);
+
+/*
+ * The same as an integer, |x| < 2^31 - 0.5: what is added is the last double below a half, so that
+ * a half is rounded up to the next whole number by the sum itself and the last double below a half
+ * is not. Nothing is asked of the fraction, which no processor could foresee.
+ */
+static inline int32_t maths_nearest(double x)
+{
+    const double below_half = 0.5 - 0x1p-54;
+
+    return (int32_t)(x + (x < 0.0 ? -below_half : below_half));
+}
 
 /*
  * Sine and cosine of the same angle, |x| <= 1e5 rad within 1 ulp. A larger finite angle counts as

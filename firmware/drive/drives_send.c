@@ -206,25 +206,13 @@ static void send_starting(struct drives *d, const struct can_port *port)
     }
 }
 
-/*
- * Nearest whole number, halves away from zero: what is added is the last double below a half, so
- * that a half is rounded up to the next whole number by the sum itself and the last double below a
- * half is not. x: within INCREMENTS_MAX and a half.
- */
-static int32_t nearest(double x)
-{
-    const double below_half = 0.5 - 0x1p-54;
-
-    return (int32_t)(x + (x < 0.0 ? -below_half : below_half));
-}
-
 /* increments = round(setpoint increments_per_mm). NaN fails the comparison. */
 static inline void set_target(struct drives *d, unsigned index, double set_mm)
 {
     struct drives_axis *axis = &d->axis[index];
     const double increments = set_mm * axis->config.increments_per_mm;
     if (maths_abs(increments) < INCREMENTS_MAX + 0.5)
-        axis->target_inc = nearest(increments);
+        axis->target_inc = maths_nearest(increments);
     else
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, takt_drives_axis_shown(axis, set_mm),
                           NULL);

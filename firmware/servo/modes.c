@@ -27,8 +27,8 @@
 
 int32_t takt_servo_increments(const struct servo *drive, double position_mm)
 {
-    double increments = takt_maths_round(position_mm * drive->increments_per_mm);
-    return (int32_t)maths_clamp(increments, -INCREMENTS_MAX, INCREMENTS_MAX);
+    double increments = position_mm * drive->increments_per_mm;
+    return maths_nearest(maths_clamp(increments, -INCREMENTS_MAX, INCREMENTS_MAX));
 }
 
 double takt_servo_actual_mm(const struct servo *drive)

@@ -16,6 +16,9 @@ static void check_whole(double x)
     TEST_ASSERT_TRUE(takt_maths_floor(x) == floor(x));
     TEST_ASSERT_TRUE(takt_maths_ceil(x) == ceil(x));
     TEST_ASSERT_TRUE(takt_maths_round(x) == round(x));
+    if (fabs(x) < 0x1p31 - 0.5) {
+        TEST_ASSERT_TRUE(maths_nearest(x) == round(x));
+    }
 }
 
 static void test_floor_ceil_and_round_are_exact(void)
