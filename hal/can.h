@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 /*
  * Bytes of the longest frame: 64 with CAN FD. A build for a controller that has classical CAN alone
@@ -48,6 +49,27 @@ static inline bool can_is_remote(const struct can_frame *frame)
 static inline unsigned can_data_length(const struct can_frame *frame)
 {
     return can_is_remote(frame) ? 0 : frame->length;
+}
+
+/*
+ * The same frame once more. What is behind its data means nothing, and of short frames, which
+ * nearly all are, it is not copied.
+ */
+static inline void can_copy(struct can_frame *to, const struct can_frame *from)
+{
+    to->id = from->id;
+    to->length = from->length;
+    if (from->length <= CAN_CLASSIC_MAX)
+        memcpy(to->data, from->data, CAN_CLASSIC_MAX);
+    else
+        memcpy(to->data, from->data, CAN_DATA_MAX);
+}
+
+/* A filter: bit id says whether frames of this identifier, remote ones too, pass. */
+#define CAN_FILTER_WORDS 64
+static inline bool can_passes(const uint32_t filter[CAN_FILTER_WORDS], uint16_t id)
+{
+    return filter[id >> 5 & (CAN_FILTER_WORDS - 1)] >> (id & 31) & 1;
 }
 
 /* Who wins arbitration: the lower one. Of one identifier that is the frame with data. */

@@ -111,7 +111,7 @@ void takt_servo_boot(struct servo *drive);
 /* The drive listens to frames of this identifier: what a filter of the bus may let through. */
 static inline bool servo_accepts(const struct servo *drive, const struct can_frame *frame)
 {
-    return drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1;
+    return can_passes(drive->accepts, frame->id);
 }
 
 /* A frame has come; the drive may send answers. */

@@ -100,7 +100,7 @@ struct drive_keeper {
 
 struct servo {
     uint8_t number; /* the node id it was made with, by which it is known however it is called */
-    uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
+    uint32_t accepts[CAN_FILTER_WORDS]; /* frames that are looked at */
     struct servo_config config;
     struct can_port port;
     struct drive_observer observer;

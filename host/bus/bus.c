@@ -28,6 +28,9 @@ bool bus_init_rates(struct bus *bus, const struct frame_rates *rates)
     bus->times = frame_bits_times(rates);
     bus->fault_from_ns = UINT64_MAX;
     frame_bits_init(&bus->tables);
+    for (unsigned i = 0; i <= BUS_WAITING_MAX; i++)
+        bus->waiting[i] = &bus->place[i];
+    bus->wire = &bus->place[BUS_WAITING_MAX + 1];
     return true;
 }
 
@@ -37,13 +40,15 @@ bool bus_init_rates(struct bus *bus, const struct frame_rates *rates)
  */
 struct bus_waiting *bus_make_room(struct bus *bus, uint64_t order, unsigned port)
 {
-    struct bus_waiting *at = &bus->waiting[bus->waiting_count++];
-    for (; at > bus->waiting && at[-1].order < order; at--)
+    struct bus_waiting **at = &bus->waiting[bus->waiting_count++];
+    struct bus_waiting *free = *at;
+    for (; at > bus->waiting && at[-1]->order < order; at--)
         at[0] = at[-1];
-    at->order = order;
-    at->port = (uint16_t)port;
+    *at = free;
+    free->order = order;
+    free->port = (uint16_t)port;
     bus->port[port].waiting++;
-    return at;
+    return free;
 }
 
 /* There is not every length of CAN FD. */
@@ -63,18 +68,17 @@ static bool port_send(void *context, const struct can_frame *frame)
 {
     struct bus_port *port = context;
     struct bus *bus = port->bus;
-    unsigned index = (unsigned)(port - bus->port);
     uint64_t since_ns = bus->now_ns;
     if (!has_room(port) ||
-        (bus_is_faulty(bus, bus->now_ns) && !bus_admit(bus, index, frame->id, &since_ns))) {
+        (bus_is_faulty(bus, bus->now_ns) && !bus_admit(bus, port->index, frame->id, &since_ns))) {
         bus->counts.refused++;
         return false;
     }
     uint64_t order = (uint64_t)can_rank(frame->id) << 48 | bus->sent++;
-    struct bus_waiting *waiting = bus_make_room(bus, order, index);
+    struct bus_waiting *waiting = bus_make_room(bus, order, port->index);
     waiting->since_ns = since_ns;
     waiting->is_repeat = false;
-    waiting->frame = *frame;
+    can_copy(&waiting->frame, frame);
     if (bus_is_fd(bus) && !can_is_remote(frame))
         fill_up(&waiting->frame);
     return true;
@@ -85,7 +89,7 @@ static bool port_receive(void *context, struct can_frame *frame)
     struct bus_port *port = context;
     if (port->read == port->written)
         return false;
-    *frame = port->received[port->read++ & (BUS_RECEIVE_MAX - 1)];
+    can_copy(frame, &port->received[port->read++ & (BUS_RECEIVE_MAX - 1)]);
     return true;
 }
 
@@ -99,15 +103,23 @@ static void collect(void *context, const struct can_frame *frame, uint64_t time_
     if (port->written - port->read == BUS_RECEIVE_MAX)
         port->bus->counts.receive_lost++;
     else
-        port->received[port->written++ & (BUS_RECEIVE_MAX - 1)] = *frame;
+        can_copy(&port->received[port->written++ & (BUS_RECEIVE_MAX - 1)], frame);
 }
 
 struct can_port bus_attach(struct bus *bus, const struct bus_listener *listener)
 {
+    return bus_attach_filtered(bus, listener, NULL);
+}
+
+struct can_port bus_attach_filtered(struct bus *bus, const struct bus_listener *listener,
+                                    const uint32_t filter[CAN_FILTER_WORDS])
+{
     assert(bus->port_count < BUS_PORT_MAX);
-    struct bus_port *port = &bus->port[bus->port_count++];
+    struct bus_port *port = &bus->port[bus->port_count];
     memset(port, 0, offsetof(struct bus_port, received));
     port->bus = bus;
+    port->index = bus->port_count++;
+    port->filter = filter;
     port->listener =
         listener && listener->on_frame ? *listener : (struct bus_listener){collect, port};
     return (struct can_port){.send = port_send, .receive = port_receive, .context = port};
@@ -121,10 +133,12 @@ void bus_observe(struct bus *bus, const struct bus_listener *listener)
 void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, uint64_t length_ns)
 {
     uint64_t space_ns = FRAME_BITS_INTERMISSION * bus->times.bit_ns;
+    struct bus_waiting *free = bus->wire;
     bus->wire = bus->waiting[index];
     for (bus->waiting_count--; index < bus->waiting_count; index++)
         bus->waiting[index] = bus->waiting[index + 1];
-    bus->port[bus->wire.port].waiting--;
+    bus->waiting[index] = free;
+    bus->port[bus->wire->port].waiting--;
     bus->frame_end_ns = start_ns + length_ns;
     bus->idle_ns = bus->frame_end_ns + space_ns;
     bus->counts.busy_ns += bus->idle_ns - start_ns;
@@ -137,19 +151,19 @@ static void begin_frame(struct bus *bus)
     unsigned winner = bus->waiting_count - 1;
     uint64_t start_ns = bus->idle_ns > bus->now_ns ? bus->idle_ns : bus->now_ns;
     const struct frame_length length =
-        frame_bits_count_port(&bus->tables, &bus->waiting[winner].frame, bus_is_fd(bus));
+        frame_bits_count_port(&bus->tables, &bus->waiting[winner]->frame, bus_is_fd(bus));
     bus_put_on_wire(bus, winner, start_ns, frame_bits_ns(&bus->times, &length));
 }
 
 void bus_count_frame(struct bus *bus)
 {
-    uint64_t response_ns = bus->now_ns - bus->wire.since_ns;
-    uint32_t *most_ns = &bus->response_max_ns[bus->wire.frame.id % BUS_ID_COUNT];
+    uint64_t response_ns = bus->now_ns - bus->wire->since_ns;
+    uint32_t *most_ns = &bus->response_max_ns[bus->wire->frame.id % BUS_ID_COUNT];
     if (response_ns > *most_ns && !bus->has_ended_responses)
         *most_ns = response_ns < UINT32_MAX ? (uint32_t)response_ns : UINT32_MAX;
     bus->counts.frames++;
     if (bus->observer.on_frame)
-        bus->observer.on_frame(bus->observer.context, &bus->wire.frame, bus->now_ns);
+        bus->observer.on_frame(bus->observer.context, &bus->wire->frame, bus->now_ns);
 }
 
 static void end_frame(struct bus *bus)
@@ -157,11 +171,12 @@ static void end_frame(struct bus *bus)
     bus->now_ns = bus->frame_end_ns;
     bus->on_wire = false;
     bus_count_frame(bus);
-    const struct bus_port *sender = &bus->port[bus->wire.port];
+    const struct can_frame *frame = &bus->wire->frame;
+    const struct bus_port *sender = &bus->port[bus->wire->port];
     const struct bus_port *end = &bus->port[bus->port_count];
     for (const struct bus_port *port = bus->port; port < end; port++)
         if (port != sender)
-            bus_deliver(bus, port);
+            bus_deliver(bus, port, frame);
 }
 
 static void run_clear(struct bus *bus, uint64_t time_ns)

@@ -73,6 +73,8 @@ enum bus_confinement { BUS_ACTIVE, BUS_PASSIVE, BUS_OFF };
 struct bus_port {
     struct bus *bus;
     struct bus_listener listener; /* the caller's, or what fills received */
+    const uint32_t *filter;       /* of frames for it; NULL: all */
+    unsigned index;               /* in bus->port */
     unsigned waiting;             /* frames in bus->waiting */
     unsigned transmit_errors;     /* error counters of its controller */
     unsigned receive_errors;
@@ -106,7 +108,7 @@ struct bus {
 
     bool on_wire; /* a frame is being sent: it cannot be overtaken any more */
     uint64_t frame_end_ns;
-    struct bus_waiting wire;
+    struct bus_waiting *wire;   /* that frame, or the last one that was sent */
     struct bus_verdict verdict; /* on it */
 
     struct bus_listener observer;
@@ -120,8 +122,12 @@ struct bus {
     uint32_t response_max_ns[BUS_ID_COUNT];
 
     unsigned waiting_count, port_count;
-    /* In falling order: the winner is the last. One more: the frame on the wire may come back. */
-    struct bus_waiting waiting[BUS_WAITING_MAX + 1];
+    /*
+     * In falling order: the winner is the last; behind them is room for others. One more: the frame
+     * on the wire may come back. Frames stay where they are, only their order changes.
+     */
+    struct bus_waiting *waiting[BUS_WAITING_MAX + 1];
+    struct bus_waiting place[BUS_WAITING_MAX + 2]; /* those and the wire's */
     struct bus_port port[BUS_PORT_MAX];
 };
 
@@ -146,6 +152,13 @@ static inline bool bus_is_fd(const struct bus *bus)
  * port with a listener has nothing to receive. At most BUS_PORT_MAX ports (asserted).
  */
 struct can_port bus_attach(struct bus *bus, const struct bus_listener *listener);
+
+/*
+ * The same with a filter, as CAN controllers have it in hardware: the listener hears no other
+ * frames. filter: must stay, and may change; NULL: there is none.
+ */
+struct can_port bus_attach_filtered(struct bus *bus, const struct bus_listener *listener,
+                                    const uint32_t filter[CAN_FILTER_WORDS]);
 
 /* Calls listener for every frame at its end, before the nodes get it. NULL: nobody any more. */
 void bus_observe(struct bus *bus, const struct bus_listener *listener);

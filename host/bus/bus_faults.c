@@ -157,10 +157,13 @@ static void lose_waiting(struct bus *bus, unsigned port)
 {
     unsigned kept = 0;
     for (unsigned i = 0; i < bus->waiting_count; i++) {
-        if (bus->waiting[i].port == port)
+        struct bus_waiting *waiting = bus->waiting[i];
+        if (waiting->port == port) {
             bus->counts.off_lost++;
-        else
-            bus->waiting[kept++] = bus->waiting[i];
+            continue;
+        }
+        bus->waiting[i] = bus->waiting[kept];
+        bus->waiting[kept++] = waiting;
     }
     bus->waiting_count = kept;
     bus->port[port].waiting = 0;
@@ -274,7 +277,7 @@ static bool begin_next(struct bus *bus, uint64_t time_ns)
     unsigned winner = 0;
     strike_ports(bus, idle_ns < time_ns ? idle_ns : time_ns);
     for (unsigned i = 0; i < bus->waiting_count; i++) {
-        uint64_t at_ns = ready_ns(bus, &bus->waiting[i], idle_ns);
+        uint64_t at_ns = ready_ns(bus, bus->waiting[i], idle_ns);
         if (at_ns <= first_ns && at_ns != UINT64_MAX) {
             first_ns = at_ns;
             winner = i; /* the last of several is the one with the lowest identifier */
@@ -282,10 +285,10 @@ static bool begin_next(struct bus *bus, uint64_t time_ns)
     }
     if (first_ns > time_ns)
         return false;
-    const struct can_frame *frame = &bus->waiting[winner].frame;
+    const struct can_frame *frame = &bus->waiting[winner]->frame;
     const struct frame_length length = frame_bits_count_port(&bus->tables, frame, bus_is_fd(bus));
     uint64_t length_ns = frame_bits_ns(&bus->times, &length);
-    draw_verdict(bus, &bus->waiting[winner], first_ns, length.nominal + length.data);
+    draw_verdict(bus, bus->waiting[winner], first_ns, length.nominal + length.data);
     if (bus->verdict.corrupt_bit != 0) {
         struct frame_levels levels;
         frame_levels_set(&levels, frame, bus_is_fd(bus));
@@ -307,7 +310,7 @@ static void suspend_if_passive(struct bus *bus, unsigned port)
  */
 static void send_again(struct bus *bus, unsigned errors)
 {
-    unsigned port = bus->wire.port;
+    unsigned port = bus->wire->port;
     struct bus_port *p = &bus->port[port];
     p->transmit_errors += errors;
     bus->is_unwell = true;
@@ -318,8 +321,8 @@ static void send_again(struct bus *bus, unsigned errors)
         bus->counts.off_lost++;
         return;
     }
-    bus->wire.is_repeat = true;
-    *bus_make_room(bus, bus->wire.order, port) = bus->wire;
+    bus->wire->is_repeat = true;
+    *bus_make_room(bus, bus->wire->order, port) = *bus->wire;
     suspend_if_passive(bus, port);
 }
 
@@ -329,14 +332,14 @@ static void end_bad(struct bus *bus)
     unsigned errors = TRANSMIT_ERROR_STEP;
     bus->counts.error_frames++;
     for (unsigned i = 0; i < bus->port_count; i++) {
-        if (i == bus->wire.port || !is_connected(bus, i, bus->now_ns))
+        if (i == bus->wire->port || !is_connected(bus, i, bus->now_ns))
             continue;
         was_heard = true;
         if (bus->port[i].receive_errors < RECEIVE_ERRORS_MAX)
             bus->port[i].receive_errors++;
     }
     /* A passive node that nobody acknowledges is alone: its counter rises no further. */
-    if (!was_heard && bus->port[bus->wire.port].transmit_errors >= PASSIVE_ERRORS)
+    if (!was_heard && bus->port[bus->wire->port].transmit_errors >= PASSIVE_ERRORS)
         errors = 0;
     send_again(bus, errors);
 }
@@ -345,22 +348,22 @@ static void deliver_to_connected(struct bus *bus)
 {
     for (unsigned i = 0; i < bus->port_count; i++) {
         struct bus_port *port = &bus->port[i];
-        if (i == bus->wire.port || !is_connected(bus, i, bus->now_ns))
+        if (i == bus->wire->port || !is_connected(bus, i, bus->now_ns))
             continue;
         if (port->receive_errors > 0)
             port->receive_errors--;
         if (!bus->verdict.is_dropped)
-            bus_deliver(bus, port);
+            bus_deliver(bus, port, &bus->wire->frame);
     }
 }
 
 static void end_good(struct bus *bus)
 {
-    struct bus_port *sender = &bus->port[bus->wire.port];
+    struct bus_port *sender = &bus->port[bus->wire->port];
     bus_count_frame(bus);
     if (bus->verdict.is_dropped)
         bus->counts.dropped++;
-    suspend_if_passive(bus, bus->wire.port);
+    suspend_if_passive(bus, bus->wire->port);
     if (sender->transmit_errors > 0)
         sender->transmit_errors--;
     if (bus->verdict.is_duplicated) {
@@ -377,7 +380,7 @@ static void end_good(struct bus *bus)
 static bool is_acknowledged(const struct bus *bus)
 {
     for (unsigned i = 0; i < bus->port_count; i++)
-        if (i != bus->wire.port && is_connected(bus, i, bus->now_ns))
+        if (i != bus->wire->port && is_connected(bus, i, bus->now_ns))
             return true;
     return false;
 }
@@ -387,7 +390,7 @@ static void end_frame(struct bus *bus)
     bus->now_ns = bus->frame_end_ns;
     bus->on_wire = false;
     strike_ports(bus, bus->now_ns);
-    if (bus->verdict.corrupt_bit != 0 || !is_connected(bus, bus->wire.port, bus->now_ns) ||
+    if (bus->verdict.corrupt_bit != 0 || !is_connected(bus, bus->wire->port, bus->now_ns) ||
         !is_acknowledged(bus))
         end_bad(bus);
     else
@@ -399,7 +402,7 @@ static void end_frame(struct bus *bus)
 static bool is_unwell(const struct bus *bus)
 {
     for (unsigned i = 0; i < bus->waiting_count; i++)
-        if (bus->waiting[i].since_ns > bus->now_ns)
+        if (bus->waiting[i]->since_ns > bus->now_ns)
             return true;
     for (unsigned i = 0; i < bus->port_count; i++) {
         const struct bus_port *port = &bus->port[i];

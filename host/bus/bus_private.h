@@ -7,6 +7,8 @@
 
 #include "bus/bus.h"
 
+#include <stddef.h>
+
 /* The place of a frame of this rank among the waiting ones; the rest of it is the caller's. */
 struct bus_waiting *bus_make_room(struct bus *bus, uint64_t order, unsigned port);
 
@@ -18,10 +20,12 @@ void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, uint64_
 /* The frame on the wire has ended: it counts and the observer sees it. */
 void bus_count_frame(struct bus *bus);
 
-/* Gives the frame on the wire to a port. */
-static inline void bus_deliver(const struct bus *bus, const struct bus_port *port)
+/* Gives a frame, that on the wire, to a port. */
+static inline void bus_deliver(const struct bus *bus, const struct bus_port *port,
+                               const struct can_frame *frame)
 {
-    port->listener.on_frame(port->listener.context, &bus->wire.frame, bus->now_ns);
+    if (port->filter == NULL || can_passes(port->filter, frame->id))
+        port->listener.on_frame(port->listener.context, frame, bus->now_ns);
 }
 
 /* The bus until time_ns with everything that can go wrong. */

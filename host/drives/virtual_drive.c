@@ -92,12 +92,12 @@ static void take_with_twin(struct virtual_drive *drive, const struct can_frame *
 void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
                                uint64_t time_ns)
 {
-    if (!servo_accepts(&drive->servo, frame) || drive->faults.is_hung)
+    if (drive->faults.is_hung)
         return;
-    if (drive->twin != NULL)
-        take_with_twin(drive, frame, time_ns);
-    else
+    if (drive->twin == NULL)
         takt_servo_on_frame_at(&drive->servo, frame, time_ns);
+    else if (servo_accepts(&drive->servo, frame))
+        take_with_twin(drive, frame, time_ns);
 }
 
 void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)

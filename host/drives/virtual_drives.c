@@ -32,9 +32,7 @@ static void start(struct virtual_drives *set, const struct virtual_drives_config
 
 static void on_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
 {
-    const struct virtual_drive *drive = context;
-    if (servo_accepts(&drive->servo, frame)) /* most are for others */
-        virtual_drive_on_frame_at(context, frame, time_ns);
+    virtual_drive_on_frame_at(context, frame, time_ns);
 }
 
 /* RPDO2 of a motor, by the motors of its bus. */
@@ -74,7 +72,8 @@ void virtual_drives_init(struct virtual_drives *set, struct bus bus[],
         struct pdo target;
         if (i < set->motors)
             set_target(&target, set, config, i, group);
-        struct can_port port = bus_attach(&bus[own.bus], &(struct bus_listener){on_frame, drive});
+        const struct bus_listener listener = {on_frame, drive};
+        struct can_port port = bus_attach_filtered(&bus[own.bus], &listener, drive->servo.accepts);
         own.is_fd = bus_is_fd(&bus[own.bus]);
         virtual_drive_init(drive, &own, i < set->motors ? &target : NULL, &port);
         virtual_drive_boot(drive);

@@ -199,6 +199,50 @@ static void test_nodes_answer_when_the_frame_ends_and_their_answers_compete(void
     TEST_ASSERT_EQUAL_HEX16(0x301, seen.frame[3].id);
 }
 
+static void test_a_filter_lets_its_identifiers_through_and_may_change(void)
+{
+    static struct record heard;
+    static uint32_t filter[CAN_FILTER_WORDS];
+    struct can_port sender = bus_attach(&bus, NULL);
+    (void)bus_attach_filtered(&bus, &(struct bus_listener){record_frame, &heard}, filter);
+    memset(&heard, 0, sizeof heard);
+    filter[0x123 >> 5] = 1u << (0x123 & 31);
+    for (unsigned id = 0; id < 0x200; id += 3)
+        TEST_ASSERT_TRUE(
+            (bus_run_until(&bus, bus_now_ns(&bus) + 100 * BIT_NS), send_frame(&sender, id, 1)));
+    TEST_ASSERT_TRUE(send_frame(&sender, CAN_REMOTE | 0x123, 2));
+    bus_run_until(&bus, bus_now_ns(&bus) + 1000 * BIT_NS);
+    TEST_ASSERT_EQUAL_UINT(2, heard.count);
+    TEST_ASSERT_EQUAL_HEX16(0x123, heard.frame[0].id);
+    TEST_ASSERT_EQUAL_HEX16(CAN_REMOTE | 0x123, heard.frame[1].id);
+    memset(filter, 0, sizeof filter);
+    TEST_ASSERT_TRUE(send_frame(&sender, 0x123, 1));
+    bus_run_until(&bus, bus_now_ns(&bus) + 1000 * BIT_NS);
+    TEST_ASSERT_EQUAL_UINT(2, heard.count);
+}
+
+/* Of 64 bytes, 8 and none: what counts of a frame comes through, and it does not grow. */
+static void test_frames_keep_their_data(void)
+{
+    struct can_port port[2];
+    struct can_frame frame, got;
+    TEST_ASSERT_TRUE(bus_init_rates(&bus, &(struct frame_rates){1000000, 4000000}));
+    for (unsigned i = 0; i < 2; i++)
+        port[i] = bus_attach(&bus, NULL);
+    const uint8_t lengths[] = {64, 0, 8, 12, 3};
+    for (unsigned k = 0; k < sizeof lengths; k++) {
+        frame = (struct can_frame){.id = 0x200, .length = lengths[k]};
+        for (unsigned i = 0; i < lengths[k]; i++)
+            frame.data[i] = (uint8_t)(7 * i + k + 1);
+        TEST_ASSERT_TRUE(port[0].send(port[0].context, &frame));
+        bus_run_until(&bus, bus_now_ns(&bus) + 1000 * BIT_NS);
+        TEST_ASSERT_TRUE(receive(&port[1], &got));
+        TEST_ASSERT_EQUAL_UINT(lengths[k], got.length);
+        if (lengths[k] > 0)
+            TEST_ASSERT_EQUAL_MEMORY(frame.data, got.data, lengths[k]);
+    }
+}
+
 static void test_a_full_transmit_queue_refuses_and_is_counted(void)
 {
     struct can_port port = bus_attach(&bus, NULL);
@@ -317,6 +361,8 @@ int main(void)
     RUN_TEST(test_a_slower_bus_takes_longer_in_proportion);
     RUN_TEST(test_a_bit_rate_out_of_range_is_refused);
     RUN_TEST(test_nodes_answer_when_the_frame_ends_and_their_answers_compete);
+    RUN_TEST(test_a_filter_lets_its_identifiers_through_and_may_change);
+    RUN_TEST(test_frames_keep_their_data);
     RUN_TEST(test_a_full_transmit_queue_refuses_and_is_counted);
     RUN_TEST(test_a_full_bus_refuses_and_stays_whole);
     RUN_TEST(test_a_full_receive_queue_keeps_the_oldest_and_counts_the_rest);
