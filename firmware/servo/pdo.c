@@ -154,14 +154,20 @@ static void start_tpdo(struct servo *drive, unsigned i)
 static void update_rpdo(struct servo *drive, unsigned i)
 {
     const struct drive_communication *c = &drive->objects.communication;
+    const struct drive_pdo *pdo = &drive->rpdo[i];
     update_pdo(drive, &drive->rpdo[i], &c->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO);
+    drive->rpdo_id[i] = pdo->is_valid ? pdo->cob_id : DRIVE_NO_ID;
+    drive->held = (uint8_t)(drive->held & ~(1u << i));
     takt_servo_set_filter(drive);
 }
 
 static void update_tpdo(struct servo *drive, unsigned i)
 {
     const struct drive_communication *c = &drive->objects.communication;
+    const struct drive_pdo *pdo = &drive->tpdo[i];
     update_pdo(drive, &drive->tpdo[i], &c->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO);
+    const unsigned bit = pdo->is_valid && pdo->transmission <= TYPE_SYNC_MAX && pdo->count > 0;
+    drive->synchronous = (uint8_t)((drive->synchronous & ~(1u << i)) | bit << i);
     start_tpdo(drive, i);
     watch_events(drive);
 }
@@ -190,10 +196,9 @@ void takt_servo_update_pdos(struct servo *drive)
 
 void takt_servo_start_pdos(struct servo *drive)
 {
-    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
-        drive->rpdo[i].is_held = false;
+    drive->held = 0;
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         start_tpdo(drive, i);
-    }
 }
 
 /* A field has the width of its object; NULL: data that nobody wants. */
@@ -245,8 +250,9 @@ static bool is_too_late(const struct servo *drive)
     return window_ns != 0 && drive->heard_ns - drive->sync_ns > window_ns;
 }
 
-static void take(struct servo *drive, struct drive_pdo *pdo, const struct can_frame *frame)
+static void take(struct servo *drive, unsigned i, const struct can_frame *frame)
 {
+    struct drive_pdo *pdo = &drive->rpdo[i];
     if (pdo->count == 0)
         return;
     if (frame->length < pdo->length) {
@@ -255,24 +261,24 @@ static void take(struct servo *drive, struct drive_pdo *pdo, const struct can_fr
     } else if (pdo->transmission > TYPE_SYNC_MAX) {
         apply(drive, pdo, frame);
     } else if (!is_too_late(drive)) {
-        pdo->held = *frame;
-        pdo->is_held = true;
+        can_copy(&pdo->held, frame);
+        drive->held = (uint8_t)(drive->held | 1u << i);
     }
 }
 
 void takt_servo_take_rpdo(struct servo *drive, const struct can_frame *frame)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
-        if (drive->rpdo[i].is_valid && frame->id == drive->rpdo[i].cob_id)
-            take(drive, &drive->rpdo[i], frame);
+        if (frame->id == drive->rpdo_id[i])
+            take(drive, i, frame);
 }
 
 void takt_servo_apply_held(struct servo *drive)
 {
-    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
-        if (!drive->rpdo[i].is_held)
+    for (unsigned i = 0; drive->held >> i != 0; i++) {
+        if (!(drive->held >> i & 1))
             continue;
-        drive->rpdo[i].is_held = false;
+        drive->held = (uint8_t)(drive->held & ~(1u << i));
         apply(drive, &drive->rpdo[i], &drive->rpdo[i].held);
     }
 }
@@ -296,10 +302,11 @@ static void send_pdo(struct servo *drive, struct drive_pdo *pdo)
 }
 
 /* Type 0: at the SYNC after an event; n: at every n-th SYNC. */
-static bool is_due_at_sync(struct drive_pdo *pdo, uint8_t sync_start, const struct can_frame *sync)
+static bool is_due_at_sync(struct servo *drive, unsigned i, const struct can_frame *sync)
 {
+    struct drive_pdo *pdo = &drive->tpdo[i];
     if (pdo->waits_for_start && sync->length == 1) {
-        if (sync->data[0] != sync_start)
+        if (sync->data[0] != drive->objects.communication.tpdo[i].sync_start)
             return false;
         pdo->syncs = (uint8_t)(pdo->transmission - 1);
     }
@@ -318,13 +325,9 @@ static bool is_due_at_sync(struct drive_pdo *pdo, uint8_t sync_start, const stru
  */
 void takt_servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
 {
-    for (unsigned i = DRIVE_PDO_COUNT; i-- > 0;) {
-        struct drive_pdo *pdo = &drive->tpdo[i];
-        uint8_t start = drive->objects.communication.tpdo[i].sync_start;
-        if (pdo->is_valid && pdo->transmission <= TYPE_SYNC_MAX && pdo->count > 0 &&
-            is_due_at_sync(pdo, start, sync))
-            send_pdo(drive, pdo);
-    }
+    for (unsigned i = DRIVE_PDO_COUNT; i-- > 0;)
+        if (drive->synchronous >> i & 1 && is_due_at_sync(drive, i, sync))
+            send_pdo(drive, &drive->tpdo[i]);
 }
 
 void takt_servo_note_events(struct servo *drive)

@@ -5,6 +5,7 @@
 #define TAKT_SERVO_SERVO_STATE_H
 
 #define SERVO_EMCY_QUEUE 8
+#define DRIVE_NO_ID      0xFFFF
 
 /*
  * A PDO as it is worked with; made from the objects whenever they change. What every cycle looks at
@@ -18,7 +19,6 @@ struct drive_pdo {
     uint8_t touches;      /* RPDO: enum of servo_private.h */
     uint8_t groups;       /* TPDO: what must be computed first */
     uint8_t events;       /* TPDO: whose change sends it */
-    bool is_held;         /* RPDO: held waits for SYNC */
     bool is_due;          /* TPDO: an event has happened */
     bool waits_for_start; /* TPDO: until SYNC's counter has its start value */
     uint8_t syncs;        /* TPDO: since it was sent */
@@ -149,6 +149,10 @@ struct servo {
     struct drive_homing homing;
     struct drive_touch_probe probe;
 
+    /* Of the PDOs below: what every frame and every SYNC asks. */
+    uint16_t rpdo_id[DRIVE_PDO_COUNT]; /* DRIVE_NO_ID: it is not valid */
+    uint8_t held;                      /* bit of an RPDO: its frame waits for SYNC */
+    uint8_t synchronous;               /* bit of a TPDO: SYNC may send it */
     struct drive_pdo rpdo[DRIVE_PDO_COUNT], tpdo[DRIVE_PDO_COUNT];
     uint8_t watched;          /* objects whose change is an event: groups */
     uint16_t seen_statusword; /* for that */
