@@ -39,7 +39,7 @@ static void take_path(struct smooth *s, double to_mm)
     s->window.at_end = false;
 }
 
-/* From rest every way is open: the path itself is taken where it is the quicker, or the only one. */
+/* From rest every way is open: the path itself is taken where it is quicker, or the only one. */
 static void choose_from_rest(struct smooth *s, union smooth_scratch *scratch,
                              const struct worth_far *curve)
 {
