@@ -70,7 +70,7 @@ float takt_fill_useful(const struct smooth *s)
 
 void takt_fill_within(struct smooth *s, float part, float fine)
 {
-    TAKT_ASSERT(part > 0.0f && part <= 1.0f && fine > 0.0f && fine <= 1.0f);
+    TAKT_ASSERT(part > 0.0f && part <= 1.0f && fine > 0.0f);
     s->route.part = part;
     takt_nominal_again(&s->route);
     set_interval(s, fine);

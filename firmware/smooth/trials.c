@@ -17,9 +17,10 @@
 #define PART_TRIED (1.0f / 4.0f)
 #define PART_LEAST (1.0f / 64.0f)
 
-/* And ever shorter intervals where the chain's end is in the first window. */
-#define FINE_LEAST (1.0f / 32.0f)
-#define FINER      0.70710678f
+/* And ever longer intervals; or shorter ones, where the chain's end is in the first window. */
+#define COARSE_MOST 4.0f
+#define FINE_LEAST  (1.0f / 32.0f)
+#define FINER       0.70710678f
 
 /*
  * Windows that the quickest is gone along; the least part of the tolerance has a quarter of all of
@@ -171,6 +172,20 @@ static bool try_one(struct smooth *s, union smooth_scratch *scratch, const struc
     return outcome == QUICKER;
 }
 
+/* Corners may be passed in less time than the path asks for, where each is not rounded for itself. */
+static bool try_coarser(struct smooth *s, union smooth_scratch *scratch, const struct rest *from,
+                        struct quickest *best, struct verifier_verdict *v)
+{
+    struct trial coarser = {best->trial.part, best->trial.fine / FINER};
+    bool found = false;
+
+    while (coarser.fine <= COARSE_MOST && try_one(s, scratch, from, coarser, best, v)) {
+        coarser.fine /= FINER;
+        found = true;
+    }
+    return found;
+}
+
 /*
  * A chain that ends in the window may have so few samples that it takes the longer the farther they
  * are apart.
@@ -205,7 +220,7 @@ struct worth_far takt_trials_from_rest(struct smooth *s, union smooth_scratch *s
          part *= 0.5f) {
         (void)try_one(s, scratch, &from, (struct trial){part, 1.0f}, &best, v);
     }
-    if (best.whole) {
+    if (!try_coarser(s, scratch, &from, &best, v) && best.whole) {
         try_finer(s, scratch, &from, top, &best, v);
     }
     begin(s, scratch, &from, &best.trial, v);
