@@ -17,7 +17,10 @@
 #define PART_TRIED (1.0f / 4.0f)
 #define PART_LEAST (1.0f / 64.0f)
 
-/* And ever longer intervals; or shorter ones, where the chain's end is in the first window. */
+/*
+ * And ever longer intervals, where the quickest comes to the chain's end; or shorter ones, where
+ * that is in the first window.
+ */
 #define COARSE_MOST 4.0f
 #define FINE_LEAST  (1.0f / 32.0f)
 #define FINER       0.70710678f
@@ -220,7 +223,9 @@ struct worth_far takt_trials_from_rest(struct smooth *s, union smooth_scratch *s
          part *= 0.5f) {
         (void)try_one(s, scratch, &from, (struct trial){part, 1.0f}, &best, v);
     }
-    if (!try_coarser(s, scratch, &from, &best, v) && best.whole) {
+    const bool ends = best.far.to_mm >= AT_REST;
+
+    if (!(ends && try_coarser(s, scratch, &from, &best, v)) && best.whole) {
         try_finer(s, scratch, &from, top, &best, v);
     }
     begin(s, scratch, &from, &best.trial, v);
