@@ -175,7 +175,7 @@ static bool try_one(struct smooth *s, union smooth_scratch *scratch, const struc
     return outcome == QUICKER;
 }
 
-/* Corners may be passed in less time than the path asks for, where each is not rounded for itself. */
+/* Many small corners, each of which is given its time, may be one wave. */
 static bool try_coarser(struct smooth *s, union smooth_scratch *scratch, const struct rest *from,
                         struct quickest *best, struct verifier_verdict *v)
 {
