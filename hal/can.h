@@ -59,10 +59,10 @@ static inline void can_copy(struct can_frame *to, const struct can_frame *from)
 {
     to->id = from->id;
     to->length = from->length;
-    if (from->length <= CAN_CLASSIC_MAX)
-        memcpy(to->data, from->data, CAN_CLASSIC_MAX);
-    else
-        memcpy(to->data, from->data, CAN_DATA_MAX);
+    memcpy(to->data, from->data, CAN_CLASSIC_MAX);
+    if (from->length > CAN_CLASSIC_MAX)
+        memcpy(to->data + CAN_CLASSIC_MAX, from->data + CAN_CLASSIC_MAX,
+               CAN_DATA_MAX - CAN_CLASSIC_MAX);
 }
 
 /* A filter: bit id says whether frames of this identifier, remote ones too, pass. */
