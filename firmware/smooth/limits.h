@@ -15,8 +15,8 @@
 /* Coordinates of their starts: with more than three axes there are half as many elements. */
 #define SMOOTH_COORDINATES_MAX (3 * SMOOTH_ELEMENTS_MAX)
 
-/* Kinds of motion among them: rapids, feeds, arcs in both senses, different offsets and so on. */
-#define SMOOTH_MODES_MAX 5
+/* What they may have in other than place, curve and feed, at one time: tools, offsets and so on. */
+#define SMOOTH_MODES_MAX 4
 
 /* Samples that are smoothed together; half as many where a machine has more axes than lanes. */
 #define SMOOTH_SAMPLES_MAX 80

@@ -95,9 +95,8 @@ void takt_route_scatter(const struct route *r, const double by_slot[], struct po
 
 static bool is_alike(const struct move *a, const struct move *b)
 {
-    bool same = a->kind == b->kind && a->overrides == b->overrides && a->plane == b->plane &&
-                a->correction_off == b->correction_off && a->contour_side == b->contour_side &&
-                a->tool == b->tool;
+    bool same = a->overrides == b->overrides && a->correction_off == b->correction_off &&
+                a->contour_side == b->contour_side && a->tool == b->tool;
 
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         same = same && a->work_mm[i] == b->work_mm[i] && a->overhang_mm[i] == b->overhang_mm[i];
@@ -123,13 +122,24 @@ static unsigned char find_mode(struct route *r, const struct move *move)
     return (unsigned char)found;
 }
 
+static const struct route_curved *curved_at(const struct route *r, const struct route_element *e)
+{
+    TAKT_ASSERT(e->curved);
+    return &r->curved[e->curved_number % SMOOTH_CURVED_MAX];
+}
+
 void takt_route_move(const struct route *r, uint32_t index, struct move *move)
 {
     const struct route_element *e = route_element(r, index);
+    const bool rapid = e->programmed_mm_s == SINGLE_INFINITY;
 
     *move = r->mode[e->mode].move;
+    move->kind = e->curved ? (enum move_kind)curved_at(r, e)->move_kind
+                 : rapid   ? MOVE_RAPID
+                           : MOVE_FEED;
+    move->plane = (enum plane)e->plane;
     move->line = e->line;
-    move->feed_mm_s = move->kind == MOVE_RAPID ? move->feed_mm_s : (double)e->programmed_mm_s;
+    move->feed_mm_s = rapid ? 0.0 : (double)e->programmed_mm_s;
     takt_route_scatter(r, route_end_point(r, index), &move->end);
 }
 
@@ -149,12 +159,14 @@ static float weighted_length(const struct curve *curve)
     return single_sqrt(square);
 }
 
-static void keep_curved(struct route *r, const struct curve *curve, float per_mm)
+static void keep_curved(struct route *r, enum move_kind kind, const struct curve *curve,
+                        float per_mm)
 {
     struct route_curved *b = &r->curved[r->curved_count % SMOOTH_CURVED_MAX];
 
     TAKT_ASSERT(r->curved_count - r->curved_first < SMOOTH_CURVED_MAX);
-    b->kind = curve->kind;
+    b->kind = (uint8_t)curve->kind;
+    b->move_kind = (uint8_t)kind;
     b->per_mm = per_mm;
     if (curve->kind == CURVE_ARC) {
         b->arc = curve->arc;
@@ -183,11 +195,12 @@ void takt_route_push(struct route *r, const struct move *move, uint32_t number,
     e->line = move->line;
     e->number = number;
     e->mode = find_mode(r, move) & ROUTE_MODES;
+    e->plane = (unsigned char)move->plane & ROUTE_PLANES;
     e->rotary = takt_curve_is_rotary(curve);
     e->curved = curve->kind != CURVE_LINE;
     e->curved_number = (unsigned char)r->curved_count;
     if (e->curved) {
-        keep_curved(r, curve, per_mm);
+        keep_curved(r, move->kind, curve, per_mm);
     }
     e->programmed_mm_s = move->kind == MOVE_RAPID ? SINGLE_INFINITY : (float)move->feed_mm_s;
     takt_nominal_set(e, curve, per_mm, r);
@@ -226,8 +239,7 @@ uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint)
 
 float takt_route_per_mm(const struct route *r, uint32_t index)
 {
-    TAKT_ASSERT(route_element(r, index)->curved);
-    return r->curved[route_element(r, index)->curved_number % SMOOTH_CURVED_MAX].per_mm;
+    return curved_at(r, route_element(r, index))->per_mm;
 }
 
 /* Its own length at a place on the route. */
@@ -243,10 +255,9 @@ static double curved_place(const struct route *r, uint32_t index, const struct c
 void takt_route_curve(const struct route *r, uint32_t index, struct curve *c)
 {
     const struct route_element *e = route_element(r, index);
-    const struct route_curved *b = &r->curved[e->curved_number % SMOOTH_CURVED_MAX];
+    const struct route_curved *b = curved_at(r, e);
 
-    TAKT_ASSERT(e->curved);
-    c->kind = b->kind;
+    c->kind = (enum curve_kind)b->kind;
     c->rotary = e->rotary;
     c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
     takt_route_scatter(r, route_start(r, index), &c->start);
@@ -306,10 +317,10 @@ bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct 
     const struct route_element *e = route_element(r, index);
 
     takt_route_move(r, index, move);
-    if (!e->curved || r->curved[e->curved_number % SMOOTH_CURVED_MAX].kind != CURVE_ARC) {
+    if (!e->curved || curved_at(r, e)->kind != CURVE_ARC) {
         return false;
     }
-    const struct curve_arc *arc = &r->curved[e->curved_number % SMOOTH_CURVED_MAX].arc;
+    const struct curve_arc *arc = &curved_at(r, e)->arc;
     const double left = (route_end_of(r, index) - at_mm) / (route_end_of(r, index) - e->start_mm);
     const double turns = maths_abs(arc->sweep_rad) * left / (2.0 * MATHS_PI);
 

@@ -42,8 +42,9 @@ struct route_slots {
  * those.
  */
 struct route_curved {
-    enum curve_kind kind;
-    float per_mm; /* length of the route for a mm of it: 1 without rotary axes */
+    uint8_t kind;      /* enum curve_kind */
+    uint8_t move_kind; /* enum move_kind */
+    float per_mm;      /* length of the route for a mm of it: 1 without rotary axes */
     union {
         struct curve_arc arc;
         struct curve_involute involute;
@@ -61,21 +62,28 @@ struct route_element {
     struct braking_limits along; /* nominal acceleration and jerk along it */
     float start_mm_s;            /* highest nominal feed at its start, for the corner there */
     uint16_t turn;               /* |change of direction| at its start, in ROUTE_TURN */
-    unsigned char curved_number; /* curved elements before it, modulo 256 */
-    unsigned char mode : 3;      /* index among the route's modes */
+    unsigned char curved_number; /* curved elements before it, modulo ROUTE_CURVED_NUMBERS */
+    unsigned char mode : 2;      /* index among the route's modes */
+    unsigned char plane : 2;     /* enum plane */
     unsigned char curved : 1;
     unsigned char binds : 1;  /* its start is slower than what follows asks for */
     unsigned char rotary : 1; /* only rotary axes move: its feed counts radians */
 };
 
+#define ROUTE_CURVED_NUMBERS 256U
+_Static_assert(ROUTE_CURVED_NUMBERS % SMOOTH_CURVED_MAX == 0, "each number has one place");
+
+/* Bits of a plane. */
+#define ROUTE_PLANES 3U
+
 /* Bits of a mode's index. */
-#define ROUTE_MODES 7U
+#define ROUTE_MODES 3U
 _Static_assert(SMOOTH_MODES_MAX <= ROUTE_MODES + 1, "a mode's index has its bits");
 
 /* Turns are up to 2. */
 #define ROUTE_TURN (1.0f / 32767.0f)
 
-/* Motions that are alike but for where they go and how fast. */
+/* Motions that are alike but for where they go, on what curve, and how fast. */
 struct route_mode {
     struct move move;
     unsigned used; /* elements of it */

@@ -144,6 +144,15 @@ def trials_are_gone_along_beyond_the_first_window():
         t.check(time_s <= 1.01 * exact_s, f"the quicker of a longer curve and the path is taken: {seed}", time_s, exact_s)
 
 
+def arcs_of_any_plane_are_one_chain():
+    """The fifth kind of motion ended what could be known: a doubled tolerance took up to 1.6 times as long. Parts of the exact path's time."""
+    for seed, part in ((880093, 0.43), (550194, 0.21), (880194, 0.28), (880240, 0.46)):
+        program, machine = draw(seed)
+        exact_s, time_s, wide_s = (time_of(program, machine, "--exact-path"), time_of(program, machine), time_of(wider(program), machine))
+        t.check(time_s <= part * exact_s, f"arcs of several planes are one chain: {seed}", time_s, exact_s)
+        t.check(wide_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled tolerance makes them no slower: {seed}", wide_s, time_s)
+
+
 def short_chains_stand_no_longer_by_a_higher_acceleration():
     """At both ends they stood for A/J, however short: with A doubled they took up to 1.57 times as long."""
     for seed in (120118, 120123, 120159, 120195, 120285):
@@ -203,6 +212,7 @@ def as_cam_systems_write():
 
 what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker()
 trials_are_gone_along_beyond_the_first_window()
+arcs_of_any_plane_are_one_chain()
 as_cam_systems_write()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()

@@ -124,6 +124,73 @@ static void test_nothing_is_taken_before_all_is_known_that_can_be(void)
     TEST_ASSERT_EQUAL(SMOOTH_PIECE, takt_smooth_take(&smooth, &scratch, &piece, &taken));
 }
 
+/* Half a circle. */
+static void set_arc(enum move_kind kind, enum plane plane)
+{
+    enum axis first;
+    enum axis second;
+
+    takt_plane_axes(plane, &first, &second);
+    set_line(first, 2.0);
+    move.kind = kind;
+    move.plane = plane;
+    move.turns = 1;
+    move.centre_mm[0] = at.at[first] + 1.0;
+    move.centre_mm[1] = at.at[second];
+    TEST_ASSERT_TRUE(takt_move_curve(&move, &at, &curve));
+}
+
+static void push_next(void)
+{
+    TEST_ASSERT_TRUE(takt_smooth_has_room(&smooth));
+    takt_smooth_push(&smooth, &move, smooth.merge.number + 1, &curve);
+    at = move.end;
+}
+
+/* Each was kept like a change of the tool, and the fifth was waited for. */
+static void test_planes_and_senses_of_arcs_and_rapids_are_no_end_of_what_can_be_known(void)
+{
+    static const enum plane planes[] = {PLANE_XY, PLANE_ZX, PLANE_YZ};
+
+    for (unsigned i = 0; i < 3; i++) {
+        set_arc(MOVE_ARC_CW, planes[i]);
+        push_next();
+        set_arc(MOVE_ARC_CCW, planes[i]);
+        push_next();
+        set_line(AXIS_X, 10.0);
+        move.kind = i == 1 ? MOVE_RAPID : MOVE_FEED;
+        push_next();
+    }
+    take_all();
+    TEST_ASSERT_EQUAL_UINT(0, smooth.route.first);
+    TEST_ASSERT_TRUE(takt_smooth_has_room(&smooth));
+}
+
+/* An arc is one of its plane and sense, a line a rapid or not, whatever the others are. */
+static void test_a_motion_is_told_as_it_was_pushed(void)
+{
+    struct move told;
+
+    set_line(AXIS_X, 10.0);
+    move.kind = MOVE_RAPID;
+    push_next();
+    set_arc(MOVE_ARC_CCW, PLANE_ZX);
+    push_next();
+    set_line(AXIS_Y, 10.0);
+    push_next();
+    takt_smooth_finish(&smooth);
+    takt_route_move(&smooth.route, 0, &told);
+    TEST_ASSERT_EQUAL(MOVE_RAPID, told.kind);
+    TEST_ASSERT_TRUE(told.feed_mm_s == 0.0);
+    takt_route_move(&smooth.route, 1, &told);
+    TEST_ASSERT_EQUAL(MOVE_ARC_CCW, told.kind);
+    TEST_ASSERT_EQUAL(PLANE_ZX, told.plane);
+    takt_route_move(&smooth.route, 2, &told);
+    TEST_ASSERT_EQUAL(MOVE_FEED, told.kind);
+    TEST_ASSERT_EQUAL(PLANE_XY, told.plane);
+    TEST_ASSERT_TRUE(told.feed_mm_s == 100.0);
+}
+
 /*
  * Four times as fast with the same jerk: what changes of the rate are rounded over on a short way
  * leaves it too little.
@@ -201,6 +268,8 @@ int main(void)
     RUN_TEST(test_an_axis_that_needs_a_longer_interval_does_not_join_a_chain_that_has_begun);
     RUN_TEST(test_axes_that_are_known_before_the_first_piece_share_one_chain);
     RUN_TEST(test_nothing_is_taken_before_all_is_known_that_can_be);
+    RUN_TEST(test_planes_and_senses_of_arcs_and_rapids_are_no_end_of_what_can_be_known);
+    RUN_TEST(test_a_motion_is_told_as_it_was_pushed);
     RUN_TEST(test_an_axis_that_needs_more_jerk_for_changes_of_rate_does_not_join_a_short_chain);
     RUN_TEST(test_the_next_chain_serves_the_axes_of_both);
     RUN_TEST(test_a_chain_that_ends_by_itself_leaves_no_axes_to_the_next);
