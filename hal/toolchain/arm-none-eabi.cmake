@@ -42,7 +42,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 # What every control cycle is in is built for speed, all else for size.
 set(TAKT_FAST_SOURCES
   base/maths.c geometry/arc.c geometry/curve.c geometry/line.c geometry/spline.c
-  motion/average.c motion/exchange.c motion/held.c motion/reference.c motion/reference_feed.c motion/reference_place.c motion/motion.c
+  motion/average.c motion/exchange.c motion/held.c motion/hold.c motion/hold_axes.c motion/hold_pieces.c motion/reference.c motion/reference_feed.c motion/reference_place.c motion/motion.c
   correction/correction.c correction/fade.c
   drive/drives_check.c drive/drives_receive.c drive/drives_send.c controller/controller.c)
 set(TAKT_FAST_OPTION -O2)
