@@ -21,70 +21,62 @@
  */
 #define LOOKED_MAX 72
 
-static inline struct range between(float a, float b)
-{
-    return a < b ? (struct range){a, b} : (struct range){b, a};
-}
-
-/* By something that is not below 0. */
-static inline struct range times(struct range a, struct range by)
-{
-    return (struct range){a.low * (a.low < 0.0f ? by.high : by.low),
-                          a.high * (a.high < 0.0f ? by.low : by.high)};
-}
-
-static inline struct range plus(struct range a, struct range b)
-{
-    return (struct range){a.low + b.low, a.high + b.high};
-}
-
-static inline bool is_within(struct range a, float limit)
-{
-    return a.high <= limit && a.low >= -limit;
-}
-
-/* Rate, size of the change, and products of them; the sign of the change, and w by that sign. */
-struct part {
-    struct range rate, change;
-    struct range rate2, rate3;
-    struct range three_rate_change;
-    float sign;
-    float w;
+/* All within `off` of mid, and none of it further than `most` from 0. */
+struct spread {
+    float mid;
+    float off;
+    float most;
 };
 
-static struct range size_between(float a, float b)
+static inline struct spread spread_between(float a, float b)
 {
-    return between(single_abs(a), single_abs(b));
+    return (struct spread){0.5f * (a + b), single_abs(0.5f * (b - a)),
+                           single_max(single_abs(a), single_abs(b))};
 }
+
+/* What the rate and its change are on a part of the way, and products of them. */
+struct part {
+    float rate;
+    struct spread change;
+    struct spread rate2;
+    struct spread rate3;
+    struct spread three_rate_change;
+    float w;
+    float w_size;
+};
 
 static struct part part_of(const struct hold_trial *a, const struct hold_trial *b, float w)
 {
-    const float sign = a->change < 0.0f || b->change < 0.0f ? -1.0f : 1.0f;
-    struct part p = {
-        .rate = between(a->rate, b->rate),
-        .change = size_between(a->change, b->change),
-        .sign = sign,
-        .w = sign * w,
+    const float low = single_min(a->rate, b->rate);
+    const float high = single_max(a->rate, b->rate);
+    const bool falls = single_abs(a->change) < single_abs(b->change);
+    const float less = falls ? a->change : b->change;
+    const float more = falls ? b->change : a->change;
+
+    return (struct part){
+        .rate = high,
+        .change = spread_between(less, more),
+        .rate2 = spread_between(low * low, high * high),
+        .rate3 = spread_between(low * low * low, high * high * high),
+        .three_rate_change = spread_between(3.0f * low * less, 3.0f * high * more),
+        .w = w,
+        .w_size = single_abs(w),
     };
-    const struct range three = {3.0f * p.rate.low, 3.0f * p.rate.high};
-
-    p.rate2 = times(p.rate, p.rate);
-    p.rate3 = times(p.rate2, p.rate);
-    p.three_rate_change = times(three, p.change);
-    return p;
 }
 
-static inline struct range by_sign(struct range a, float sign)
-{
-    return sign < 0.0f ? (struct range){-a.high, -a.low} : a;
-}
+/* A part of a piece: its middle, and half its length. */
+struct stretch {
+    float mid;
+    float half;
+};
 
 /*
- * Axis i on a piece from f to g of it. Both sums by the sign of the change:
- *     x' |q| + sign x'' r^2            x' (sign w) + 3 x'' r |q| + sign x''' r^3
+ * Axis i on a part of a piece; off the middle of it x' is by what x'' makes of half its length and
+ * by the sag of x''', x'' by what x''' makes of it:
+ *     x' q + x'' r^2            x' w + 3 x'' r q + x''' r^3
  */
-static bool axis_can(const struct hold *h, const float *piece, unsigned i, float f, float g,
-                     const struct part *p)
+static inline bool axis_can(const struct hold *h, const float *piece, unsigned i,
+                            const struct stretch *s, const struct part *p)
 {
     const float start = piece[i];
     const float bend = piece[h->axes + i];
@@ -95,37 +87,39 @@ static bool axis_can(const struct hold *h, const float *piece, unsigned i, float
     }
     const float bent = bend != 0.0f || third != 0.0f ? 1.0f : 0.0f;
     const float off = bent * h->off_second;
-    const float off_third = bent * h->off_third;
-    const float twist = p->sign * third;
-    const float sag = single_abs(third) * (g - f) * (g - f) * 0.125f + off;
-    const struct range at =
-        between(start + f * (bend + 0.5f * f * third), start + g * (bend + 0.5f * g * third));
-    const struct range first = {at.low - sag, at.high + sag};
-    const struct range bends = between(bend + f * third, bend + g * third);
-    const struct range second = {bends.low - off, bends.high + off};
-    const struct range a = plus(times(first, p->change), times(by_sign(second, p->sign), p->rate2));
-    const struct range j =
-        plus(plus(between(first.low * p->w, first.high * p->w),
-                  times((struct range){twist - off_third, twist + off_third}, p->rate3)),
-             times(second, p->three_rate_change));
+    const float size3 = single_abs(third);
+    const float second = bend + s->mid * third;
+    const float size2 = single_abs(second);
+    const float off2 = s->half * size3 + off;
+    const float first = start + s->mid * (bend + 0.5f * s->mid * third);
+    const float size1 = single_abs(first);
+    const float off1 = s->half * (size2 + 0.5f * s->half * size3) + off;
+    const float a = single_abs(first * p->change.mid + second * p->rate2.mid) +
+                    size1 * p->change.off + off1 * p->change.most + size2 * p->rate2.off +
+                    off2 * p->rate2.most;
+    const float j =
+        single_abs(first * p->w + second * p->three_rate_change.mid + third * p->rate3.mid) +
+        off1 * p->w_size + size2 * p->three_rate_change.off + off2 * p->three_rate_change.most +
+        size3 * p->rate3.off + bent * h->off_third * p->rate3.most;
 
-    return is_within(times(first, p->rate), h->velocity[i] * (1.0f + SLACK)) &&
-           is_within(a, h->acceleration[i]) && is_within(j, h->jerk[i]);
+    return (size1 + off1) * p->rate <= h->velocity[i] * (1.0f + SLACK) && a <= h->acceleration[i] &&
+           j <= h->jerk[i];
 }
 
 /* The feed and the axes on a piece. */
 static bool piece_can(struct hold *h, uint32_t k, float f, float g, const struct part *p)
 {
     const float *piece = hold_piece(h, k);
+    const struct stretch s = {0.5f * (f + g), 0.5f * (g - f)};
 
     if (++h->looked > LOOKED_MAX) {
         return false;
     }
-    if (p->rate.high > piece[hold_stride(h->axes) - 1]) {
+    if (p->rate > piece[hold_stride(h->axes) - 1]) {
         return false;
     }
     for (unsigned i = 0; i < h->axes; i++) {
-        if (!axis_can(h, piece, i, f, g, p)) {
+        if (!axis_can(h, piece, i, &s, p)) {
             return false;
         }
     }
