@@ -156,18 +156,35 @@ static bool reference_can_take(const struct hold *h, const struct path *path,
            takt_reference_could_be(l, at, feed, stop);
 }
 
-/* Does the change go to another one by w within all limits? Neither is on the other side of 0. */
+/*
+ * Does the change go to another one by w within all limits? Neither is on the other side of 0. What
+ * holds for all of the way together need not be looked at in parts; of these the first to be looked
+ * at is where it is fastest: there it fails.
+ */
 static bool can_change(struct hold *h, struct hold_trial *s, float to, float w)
 {
+    struct hold_trial at[EASE_PARTS + 1] = {*s};
     const float t = (to - s->change) / (w * (float)EASE_PARTS);
 
     TAKT_ASSERT(w != 0.0f);
-    for (unsigned i = 0; i < EASE_PARTS && s->change != to; i++) {
-        const struct hold_trial from = *s;
+    if (s->change == to) {
+        return true;
+    }
+    for (unsigned i = 0; i < EASE_PARTS; i++) {
+        at[i + 1] = at[i];
+        try_advance(&at[i + 1], w, t);
+    }
+    at[EASE_PARTS].change = to;
+    *s = at[EASE_PARTS];
+    if (takt_hold_can_go(h, &at[0], s, w)) {
+        return true;
+    }
+    const bool rises = s->rate > at[0].rate;
 
-        try_advance(s, w, t);
-        s->change = i + 1 == EASE_PARTS ? to : s->change;
-        if (!takt_hold_can_go(h, &from, s, w)) {
+    for (unsigned i = 0; i < EASE_PARTS; i++) {
+        const struct hold_trial *part = &at[rises ? EASE_PARTS - 1 - i : i];
+
+        if (!takt_hold_can_go(h, part, part + 1, w)) {
             return false;
         }
     }
@@ -224,10 +241,11 @@ static bool can_ease(struct hold *h, const struct path *path, const struct refer
 {
     ending->ease = (double)e;
     ending->peak = 0.0;
-    if (!(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
+    if (h->refusals >= REFUSALS_MAX ||
+        !(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
         return false;
     }
-    if (h->refusals < REFUSALS_MAX && reference_can_take(h, path, l, &s, stop)) {
+    if (reference_can_take(h, path, l, &s, stop)) {
         return true;
     }
     h->refusals++;

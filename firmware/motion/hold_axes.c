@@ -136,7 +136,8 @@ bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct h
     if (b->at < a->at || last >= h->end - h->here) {
         return false;
     }
-    for (uint32_t i = first; i <= last; i++) {
+    for (uint32_t k = first; k <= last; k++) {
+        const uint32_t i = b->rate > a->rate ? last - (k - first) : k;
         const float f = i == first ? a->at - (float)i : 0.0f;
         const float g = i == last ? b->at - (float)i : 1.0f;
 
