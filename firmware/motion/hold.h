@@ -29,13 +29,15 @@
 /*
  * A piece is stored as its derivatives, by axis: mm (rad) per piece, and per piece^2 where it
  * begins and where it ends; the second one is linear between. Behind them its highest rate,
- * whatever the overrides are: pieces a cycle.
+ * whatever the overrides are: pieces a cycle; and of all axes the most of x'/V, x'/A, x''/A, x'/J,
+ * x''/J and x'''/J, anywhere on it.
  *
- *     first[axes] | second[axes] | second_end[axes] | top
+ *     first[axes] | second[axes] | second_end[axes] | top | most[HOLD_BOUNDS]
  */
+#define HOLD_BOUNDS 6
 static inline size_t hold_stride(unsigned axes)
 {
-    return 3 * (size_t)axes + 1;
+    return 3 * (size_t)axes + 1 + HOLD_BOUNDS;
 }
 
 /* Where the setpoint is, in pieces from the start of one, and how it moves. */

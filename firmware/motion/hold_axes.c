@@ -16,10 +16,11 @@
 #define SLACK 1e-5f
 
 /*
- * What is tried in a cycle is looked at on so many pieces in all: what was found before can always
- * be gone on with.
+ * What is tried in a cycle is looked at so often in all, where an axis on a piece counts as much as
+ * LOOKED_BY_AXIS pieces as a whole: what was found before can always be gone on with.
  */
-#define LOOKED_MAX 72
+#define LOOKED_MAX     160
+#define LOOKED_BY_AXIS 2
 
 /* All within `off` of mid, and none of it further than `most` from 0. */
 struct spread {
@@ -70,56 +71,102 @@ struct stretch {
     float half;
 };
 
-/*
- * Axis i on a part of a piece; off the middle of it x' is by what x'' makes of half its length and
- * by the sag of x''', x'' by what x''' makes of it:
- *     x' q + x'' r^2            x' w + 3 x'' r q + x''' r^3
- */
-static inline bool axis_can(const struct hold *h, const float *piece, unsigned i,
-                            const struct stretch *s, const struct part *p)
+/* An axis on it: its derivatives in the middle, and how far off that they are at most. */
+struct moves {
+    float first, second, third;
+    float off1, off2, off3;
+};
+
+/* x' is off by what x'' makes of half the length and by the sag of x''', x'' by what x''' makes. */
+static inline struct moves moves_of(const struct hold *h, const float *piece, unsigned i,
+                                    const struct stretch *s)
 {
     const float start = piece[i];
     const float bend = piece[h->axes + i];
     const float third = piece[2 * h->axes + i] - bend;
-
-    if (start == 0.0f && bend == 0.0f && third == 0.0f) {
-        return true;
-    }
     const float bent = bend != 0.0f || third != 0.0f ? 1.0f : 0.0f;
-    const float off = bent * h->off_second;
-    const float size3 = single_abs(third);
     const float second = bend + s->mid * third;
-    const float size2 = single_abs(second);
-    const float off2 = s->half * size3 + off;
-    const float first = start + s->mid * (bend + 0.5f * s->mid * third);
-    const float size1 = single_abs(first);
-    const float off1 = s->half * (size2 + 0.5f * s->half * size3) + off;
-    const float a = single_abs(first * p->change.mid + second * p->rate2.mid) +
-                    size1 * p->change.off + off1 * p->change.most + size2 * p->rate2.off +
-                    off2 * p->rate2.most;
-    const float j =
-        single_abs(first * p->w + second * p->three_rate_change.mid + third * p->rate3.mid) +
-        off1 * p->w_size + size2 * p->three_rate_change.off + off2 * p->three_rate_change.most +
-        size3 * p->rate3.off + bent * h->off_third * p->rate3.most;
+    const float by_third = s->half * single_abs(third);
+    const float off = bent * h->off_second;
 
-    return (size1 + off1) * p->rate <= h->velocity[i] * (1.0f + SLACK) && a <= h->acceleration[i] &&
-           j <= h->jerk[i];
+    return (struct moves){
+        .first = start + s->mid * (bend + 0.5f * s->mid * third),
+        .second = second,
+        .third = third,
+        .off1 = s->half * (single_abs(second) + 0.5f * by_third) + off,
+        .off2 = by_third + off,
+        .off3 = bent * h->off_third,
+    };
+}
+
+/* x' q + x'' r^2 and x' w + 3 x'' r q + x''' r^3 of axis i. */
+static inline bool axis_can(const struct hold *h, unsigned i, const struct moves *m,
+                            const struct part *p)
+{
+    const float size1 = single_abs(m->first);
+    const float size2 = single_abs(m->second);
+    const float a = single_abs(m->first * p->change.mid + m->second * p->rate2.mid) +
+                    size1 * p->change.off + m->off1 * p->change.most + size2 * p->rate2.off +
+                    m->off2 * p->rate2.most;
+    const float j = single_abs(m->first * p->w + m->second * p->three_rate_change.mid +
+                               m->third * p->rate3.mid) +
+                    m->off1 * p->w_size + size2 * p->three_rate_change.off +
+                    m->off2 * p->three_rate_change.most + single_abs(m->third) * p->rate3.off +
+                    m->off3 * p->rate3.most;
+
+    return (size1 + m->off1) * p->rate <= h->velocity[i] * (1.0f + SLACK) &&
+           a <= h->acceleration[i] && j <= h->jerk[i];
+}
+
+void takt_hold_bound(const struct hold *h, float *piece)
+{
+    const struct stretch whole = {0.5f, 0.5f};
+    float *most = piece + hold_stride(h->axes) - HOLD_BOUNDS;
+
+    for (unsigned i = 0; i < HOLD_BOUNDS; i++) {
+        most[i] = 0.0f;
+    }
+    for (unsigned i = 0; i < h->axes; i++) {
+        const struct moves m = moves_of(h, piece, i, &whole);
+        const float first = single_abs(m.first) + m.off1;
+        const float second = single_abs(m.second) + m.off2;
+        const float by_a = 1.0f / h->acceleration[i];
+        const float by_j = 1.0f / h->jerk[i];
+
+        most[0] = single_max(most[0], first / h->velocity[i]);
+        most[1] = single_max(most[1], first * by_a);
+        most[2] = single_max(most[2], second * by_a);
+        most[3] = single_max(most[3], first * by_j);
+        most[4] = single_max(most[4], second * by_j);
+        most[5] = single_max(most[5], (single_abs(m.third) + m.off3) * by_j);
+    }
+}
+
+/* Can all axes, even if one did the most of each of them, with one sign? */
+static inline bool all_can(const float most[], const struct part *p)
+{
+    return most[0] * p->rate <= 1.0f &&
+           most[1] * p->change.most + most[2] * p->rate2.most <= 1.0f - SLACK &&
+           most[3] * p->w_size + most[4] * p->three_rate_change.most + most[5] * p->rate3.most <=
+               1.0f - SLACK;
 }
 
 /* The feed and the axes on a piece. */
 static bool piece_can(struct hold *h, uint32_t k, float f, float g, const struct part *p)
 {
     const float *piece = hold_piece(h, k);
+    const float *most = piece + hold_stride(h->axes) - HOLD_BOUNDS;
     const struct stretch s = {0.5f * (f + g), 0.5f * (g - f)};
 
-    if (++h->looked > LOOKED_MAX) {
-        return false;
-    }
-    if (p->rate > piece[hold_stride(h->axes) - 1]) {
-        return false;
+    h->looked++;
+    if (p->rate > most[-1] || all_can(most, p)) {
+        return p->rate <= most[-1];
     }
     for (unsigned i = 0; i < h->axes; i++) {
-        if (!axis_can(h, piece, i, &s, p)) {
+        const struct moves m = moves_of(h, piece, i, &s);
+
+        h->looked += LOOKED_BY_AXIS;
+        if (h->looked > LOOKED_MAX || !axis_can(h, i, &m, p)) {
             return false;
         }
     }

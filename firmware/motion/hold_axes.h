@@ -24,6 +24,9 @@ struct hold_trial {
     float change;
 };
 
+/* Fills in what is stored of a piece behind its highest rate. */
+void takt_hold_bound(const struct hold *h, float *piece);
+
 /*
  * Can it go from one state to another by w, on pieces that are known, and not back? In one
  * direction of the change.

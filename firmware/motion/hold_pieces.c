@@ -6,6 +6,7 @@
 
 #include "base/assert.h"
 #include "base/maths.h"
+#include "motion/hold_axes.h"
 #include "plan/path_unit.h"
 #include "smooth/single.h"
 
@@ -95,7 +96,7 @@ static void read_smooth(struct hold *h, const struct path *path)
         p[h->axes + i] = (float)(step1 - step0);
         p[2 * h->axes + i] = (float)(step2 - step1);
     }
-    p[hold_stride(h->axes) - 1] = top_of(h, path, h->end);
+    p[3 * (size_t)h->axes] = top_of(h, path, h->end);
 }
 
 /* Does the block go on with the curve of the one before? */
@@ -126,7 +127,7 @@ static void compute_start(struct hold *h, struct path *path, uint32_t k)
         p[i] = (float)(t.at[h->axis[i]] * part);
         p[h->axes + i] = 0.0f;
     }
-    p[hold_stride(h->axes) - 1] = h->part_top;
+    p[3 * (size_t)h->axes] = h->part_top;
     if (c->kind == CURVE_ARC) {
         const double turn = c->arc.sweep_rad * part / c->length_mm;
 
@@ -288,6 +289,7 @@ void takt_hold_read(struct hold *h, struct path *path)
         } else {
             read_part(h, path);
         }
+        takt_hold_bound(h, piece_at(h, h->end));
         h->end++;
     }
 }
