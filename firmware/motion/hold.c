@@ -198,13 +198,17 @@ static bool can_change(struct hold *h, struct hold_trial *s, float to, float w)
  */
 static float highest_rate(const struct hold *h, const struct reference *l)
 {
-    const double rate = h->place.rate;
-    const double change = h->place.change;
-    const double ahead = l->feed * PATH_UNITS_PER_MM / h->length;
-    const double peak = h->ending.ease > 0.0 ? rate + change * change / (2.0 * h->ending.ease)
-                                             : maths_max(rate, ahead);
+    const float rate = (float)h->place.rate;
+    const float change = (float)h->place.change;
+    const float ease = (float)h->ending.ease;
+    float most = rate;
 
-    return (float)(change > 0.0 ? peak : rate) * (1.0f + TOP_SLACK);
+    if (change > 0.0f && ease > 0.0f) {
+        most += change * change / (2.0f * ease);
+    } else if (change > 0.0f) {
+        most = single_max(rate, (float)(l->feed * PATH_UNITS_PER_MM / h->length));
+    }
+    return most * (1.0f + TOP_SLACK);
 }
 
 /* Does a change above 0 go there? */
@@ -245,6 +249,7 @@ static bool can_ease(struct hold *h, const struct path *path, const struct refer
         !(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
         return false;
     }
+    h->looked += HOLD_LOOKED_BY_REFERENCE;
     if (reference_can_take(h, path, l, &s, stop)) {
         return true;
     }
@@ -275,34 +280,41 @@ static bool find_ending(struct hold *h, const struct path *path, const struct re
            (tries && can_ease(h, path, l, *s, other, stop, ending));
 }
 
-/* Goes on by w if there is an ease behind it. In one direction in a cycle: the bounds need it. */
+/* One cycle by w; false: the rate would turn back within it. */
+static bool go_by(struct hold *h, double w)
+{
+    struct hold_state place = h->place;
+
+    advance(&place, w, 1.0);
+    if (place.at < h->place.at) {
+        return false;
+    }
+    h->moved = place.at - h->place.at;
+    h->place = place;
+    return true;
+}
+
+/*
+ * Goes on by w if there is an ease behind it. In one direction in a cycle: the bounds need it. That
+ * is tried in single precision.
+ */
 static bool try_step(struct hold *h, const struct path *path, const struct reference *l, float w,
                      float hardest, bool stop, bool first)
 {
     const struct hold_trial here = {(float)h->place.at, (float)h->place.rate,
                                     (float)h->place.change};
     const bool turns = w * here.change < 0.0f && single_abs(w) > single_abs(here.change);
-    const double by = turns ? -h->place.change : (double)w;
-    struct hold_state place = h->place;
+    const float by = turns ? -here.change : w;
+    struct hold_trial next = here;
     struct hold_ending ending;
 
-    if (here.rate == 0.0f && !(w > 0.0f)) {
+    try_advance(&next, by, 1.0f);
+    if ((here.rate == 0.0f && !(w > 0.0f)) || next.rate > h->most ||
+        !takt_hold_can_go(h, &here, &next, by) ||
+        !find_ending(h, path, l, &next, hardest, stop, first, &ending) ||
+        !go_by(h, turns ? -h->place.change : (double)w)) {
         return false;
     }
-    advance(&place, by, 1.0);
-    if (place.at < h->place.at) {
-        return false; /* the rate would turn back within the cycle */
-    }
-    const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
-
-    if (next.rate > h->most || !takt_hold_can_go(h, &here, &next, (float)by)) {
-        return false;
-    }
-    if (!find_ending(h, path, l, &next, hardest, stop, first, &ending)) {
-        return false;
-    }
-    h->moved = place.at - h->place.at;
-    h->place = place;
     h->ending = ending;
     return true;
 }
@@ -355,7 +367,6 @@ static bool find_step(struct hold *h, const struct path *path, const struct refe
 
     h->turn++;
     h->refusals = 0;
-    h->looked = 0;
     h->most = stop ? highest_rate(h, l) : SINGLE_INFINITY;
     if (stop && rate <= 2.0f * hardest &&
         try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {

@@ -27,6 +27,17 @@
 #define HOLD_PIECES_MIN 8
 
 /*
+ * So often are pieces looked at in a cycle, at most: what was found before can always be gone on
+ * with. Beside a piece as a whole an axis on it counts, one that is read, and the trapezoidal
+ * reference, as it takes them time.
+ */
+#define HOLD_LOOKED_MAX          200
+#define HOLD_LOOKED_BY_AXIS      2
+#define HOLD_LOOKED_BY_WAY       3
+#define HOLD_LOOKED_BY_READING   30
+#define HOLD_LOOKED_BY_REFERENCE 40
+
+/*
  * A piece is stored as its derivatives, by axis: mm (rad) per piece, and per piece^2 where it
  * begins and where it ends; the second one is linear between. Behind them its highest rate,
  * whatever the overrides are: pieces a cycle; and of all axes the most of x'/V, x'/A, x''/A, x'/J,
@@ -86,7 +97,7 @@ struct hold {
     float most;        /* no higher does the rate get in coming to rest */
     float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
     unsigned turn;     /* counts cycles */
-    unsigned looked;   /* pieces that have been looked at in this cycle */
+    unsigned looked;   /* so often, in this cycle */
     unsigned refusals; /* of the trapezoidal reference, in this cycle */
     bool stops;        /* it was to stop in the last cycle */
     double top;        /* rate that the curve was made for, or more */

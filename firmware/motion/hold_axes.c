@@ -15,13 +15,6 @@
 /* Rounding. */
 #define SLACK 1e-5f
 
-/*
- * What is tried in a cycle is looked at so often in all, where an axis on a piece counts as much as
- * LOOKED_BY_AXIS pieces as a whole: what was found before can always be gone on with.
- */
-#define LOOKED_MAX     160
-#define LOOKED_BY_AXIS 2
-
 /* All within `off` of mid, and none of it further than `most` from 0. */
 struct spread {
     float mid;
@@ -158,15 +151,17 @@ static bool piece_can(struct hold *h, uint32_t k, float f, float g, const struct
     const float *most = piece + hold_stride(h->axes) - HOLD_BOUNDS;
     const struct stretch s = {0.5f * (f + g), 0.5f * (g - f)};
 
-    h->looked++;
+    if (++h->looked > HOLD_LOOKED_MAX) {
+        return false;
+    }
     if (p->rate > most[-1] || all_can(most, p)) {
         return p->rate <= most[-1];
     }
     for (unsigned i = 0; i < h->axes; i++) {
         const struct moves m = moves_of(h, piece, i, &s);
 
-        h->looked += LOOKED_BY_AXIS;
-        if (h->looked > LOOKED_MAX || !axis_can(h, i, &m, p)) {
+        h->looked += HOLD_LOOKED_BY_AXIS;
+        if (!axis_can(h, i, &m, p)) {
             return false;
         }
     }
@@ -180,6 +175,7 @@ bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct h
     const uint32_t last = (uint32_t)b->at;
     const struct part p = part_of(a, b, w);
 
+    h->looked += HOLD_LOOKED_BY_WAY;
     if (b->at < a->at || last >= h->end - h->here) {
         return false;
     }

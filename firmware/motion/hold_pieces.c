@@ -14,7 +14,7 @@
 
 /* Pieces that are read in a cycle, of a smoothed curve, and parts of a line or an arc. */
 #define READ_MAX  4
-#define PARTS_MAX 8
+#define PARTS_MAX 3
 
 /*
  * One of so many parts of an arc is computed, the others are turned on from it: by rounding they
@@ -49,7 +49,11 @@ static float top_of(const struct hold *h, const struct path *path, uint32_t bloc
 
 float takt_hold_top(const struct hold *h, const struct path *path, uint32_t piece)
 {
-    return h->smooth ? top_of(h, path, piece) : h->part_top;
+    if (!h->smooth) {
+        return h->part_top;
+    }
+    return piece - h->here < h->end - h->here ? hold_piece(h, piece)[3 * (size_t)h->axes]
+                                              : top_of(h, path, piece);
 }
 
 static double length_of(const struct path *path, uint32_t block)
@@ -92,7 +96,7 @@ static void read_smooth(struct hold *h, const struct path *path)
         const double step1 = c[2].at[axis] - c[1].at[axis];
         const double step2 = c[3].at[axis] - c[2].at[axis];
 
-        p[i] = (float)(0.5 * (step0 + step1));
+        p[i] = 0.5f * (float)(step0 + step1);
         p[h->axes + i] = (float)(step1 - step0);
         p[2 * h->axes + i] = (float)(step2 - step1);
     }
@@ -177,18 +181,18 @@ static void read_part(struct hold *h, struct path *path)
  * The way to rest at this feed, mm a cycle: v/2 (v/a + a/J) of the axis that takes longest,
  * a^2 <= v J.
  */
-static double way_to_rest(const struct hold *h, const struct curve *c, double feed_mm)
+static float way_to_rest(const struct hold *h, const struct curve *c, float feed_mm)
 {
-    double way = 0.0;
+    float way = 0.0f;
 
     for (unsigned i = 0; i < h->axes; i++) {
         const unsigned axis = h->axis[i];
         const bool turns = c->kind == CURVE_ARC && (axis == c->arc.first || axis == c->arc.second);
-        const double v = turns ? feed_mm : feed_mm * maths_abs(c->slope.at[axis]);
-        const double j = (double)h->jerk[i];
-        const double a = maths_min((double)h->acceleration[i], maths_sqrt(v * j));
+        const float v = turns ? feed_mm : feed_mm * single_abs((float)c->slope.at[axis]);
+        const float j = h->jerk[i];
+        const float a = single_min(h->acceleration[i], single_sqrt(v * j));
 
-        way = v > 0.0 ? maths_max(way, 0.5 * feed_mm * (v / a + a / j)) : way;
+        way = v > 0.0f ? single_max(way, 0.5f * feed_mm * (v / a + a / j)) : way;
     }
     return way;
 }
@@ -248,7 +252,7 @@ static bool begin_parts(struct hold *h, struct path *path, double way)
     }
     const double mm = b->scale / PATH_UNITS_PER_MM; /* of a path unit */
     const double curvature = curvature_of(c);
-    const double part = PART_OF_WAY * way_to_rest(h, c, way * mm);
+    const double part = PART_OF_WAY * (double)way_to_rest(h, c, (float)(way * mm));
     const double most = part * curvature > PART_OF_RADIUS ? PART_OF_RADIUS / curvature : part;
 
     h->length = maths_max((double)(int64_t)(most / mm), (double)b->length / COUNT_MAX);
@@ -280,6 +284,7 @@ void takt_hold_read(struct hold *h, struct path *path)
     const unsigned at_once = h->smooth ? READ_MAX : PARTS_MAX;
 
     TAKT_ASSERT(h->end - h->here <= most);
+    h->looked = 0;
     for (unsigned i = 0; i < at_once && !h->whole && h->end - h->here < most; i++) {
         if (!has_next(h, path)) {
             return;
@@ -290,6 +295,7 @@ void takt_hold_read(struct hold *h, struct path *path)
             read_part(h, path);
         }
         takt_hold_bound(h, piece_at(h, h->end));
+        h->looked += HOLD_LOOKED_BY_READING;
         h->end++;
     }
 }
