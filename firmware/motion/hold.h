@@ -34,7 +34,7 @@
 #define HOLD_LOOKED_MAX          200
 #define HOLD_LOOKED_BY_AXIS      2
 #define HOLD_LOOKED_BY_WAY       3
-#define HOLD_LOOKED_BY_READING   30
+#define HOLD_LOOKED_BY_READING   15
 #define HOLD_LOOKED_BY_REFERENCE 40
 
 /*

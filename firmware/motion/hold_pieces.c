@@ -277,15 +277,25 @@ static bool has_next(struct hold *h, const struct path *path)
     return !h->whole;
 }
 
+/* More of a smoothed curve where none are known yet, or as many as it passes and some more. */
+static unsigned at_once(const struct hold *h)
+{
+    const float wanted = 2.0f + (float)h->place.rate;
+
+    return !h->smooth                                       ? PARTS_MAX
+           : h->end == h->here || wanted >= (float)READ_MAX ? READ_MAX
+                                                            : (unsigned)wanted;
+}
+
 /* Behind parts of a line or an arc lies where the next one begins. */
 void takt_hold_read(struct hold *h, struct path *path)
 {
     const unsigned most = h->smooth ? h->pieces : h->pieces - 1;
-    const unsigned at_once = h->smooth ? READ_MAX : PARTS_MAX;
+    const unsigned once = at_once(h);
 
     TAKT_ASSERT(h->end - h->here <= most);
     h->looked = 0;
-    for (unsigned i = 0; i < at_once && !h->whole && h->end - h->here < most; i++) {
+    for (unsigned i = 0; i < once && !h->whole && h->end - h->here < most; i++) {
         if (!has_next(h, path)) {
             return;
         }
@@ -364,6 +374,7 @@ bool takt_hold_look(struct hold *h, struct path *path, double at, double way)
         return false;
     }
     h->place.at = at / h->length;
+    h->place.rate = way / h->length;
     h->here = smooth ? path->first : (uint32_t)h->place.at;
     h->place.at -= smooth ? 0.0 : (double)h->here;
     if (other || (int32_t)(h->end - h->here) <= 0) {
@@ -372,5 +383,5 @@ bool takt_hold_look(struct hold *h, struct path *path, double at, double way)
         h->whole = false;
     }
     takt_hold_read(h, path);
-    return h->end != h->here;
+    return !other && h->end != h->here;
 }
