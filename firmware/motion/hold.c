@@ -74,7 +74,7 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 /* Rounding. */
 #define TOP_SLACK  1e-5f
 #define REST_PART  1e-9
-#define TRIAL_PART 4e-6
+#define TRIAL_PART 4e-6f
 
 /* -- the way on -- */
 
@@ -142,17 +142,20 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
  * it. It takes over at the end of the cycle in which the change comes to 0, and keeps its feed in
  * the next one (takt_reference_follow). To stop it may be faster than the overrides ask for.
  */
-static bool reference_can_take(const struct hold *h, const struct path *path,
-                               const struct reference *l, const struct hold_trial *s, bool stop)
+static bool reference_can_take(struct hold *h, const struct path *path, const struct reference *l,
+                               const struct hold_trial *s, bool stop)
 {
-    const double rate = (double)s->rate * (1.0 + TRIAL_PART);
-    const double ahead = (double)s->at + 0.5 * (l->window + 3.0) * rate;
-    const uint64_t at = takt_hold_start(h, path) + (uint64_t)(ahead * h->length);
+    const float rate = s->rate * (1.0f + TRIAL_PART);
+    const float ahead = s->at + 0.5f * (float)(l->window + 3.0) * rate;
 
-    const double feed = rate * h->length / PATH_UNITS_PER_MM;
+    if (stop && !tops_allow(h, path, l, s, ahead)) {
+        return false;
+    }
+    const uint64_t at = takt_hold_start(h, path) + (uint64_t)((double)ahead * h->length);
+    const double feed = (double)rate * h->length / PATH_UNITS_PER_MM;
 
+    h->looked += HOLD_LOOKED_BY_REFERENCE;
     return (h->smooth || takt_reference_could_rest(l, at, feed, path_end(path, h->within))) &&
-           (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
            takt_reference_could_be(l, at, feed, stop);
 }
 
@@ -249,7 +252,6 @@ static bool can_ease(struct hold *h, const struct path *path, const struct refer
         !(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
         return false;
     }
-    h->looked += HOLD_LOOKED_BY_REFERENCE;
     if (reference_can_take(h, path, l, &s, stop)) {
         return true;
     }
@@ -393,7 +395,7 @@ static bool is_changing(const struct hold *h)
 }
 
 /* Is it at the rate that the trapezoidal reference may have here, or nearly? */
-static bool has_arrived(const struct hold *h, const struct path *path, const struct reference *l)
+static bool has_arrived(struct hold *h, const struct path *path, const struct reference *l)
 {
     const struct hold_trial faster = {.at = (float)h->place.at,
                                       .rate = (float)h->place.rate * (1.0f + ARRIVED_PART)};

@@ -35,7 +35,7 @@
 #define HOLD_LOOKED_BY_AXIS      2
 #define HOLD_LOOKED_BY_WAY       3
 #define HOLD_LOOKED_BY_READING   15
-#define HOLD_LOOKED_BY_REFERENCE 40
+#define HOLD_LOOKED_BY_REFERENCE 25
 
 /*
  * A piece is stored as its derivatives, by axis: mm (rad) per piece, and per piece^2 where it
