@@ -31,7 +31,7 @@
  * with. Beside a piece as a whole an axis on it counts, one that is read, and the trapezoidal
  * reference, as it takes them time.
  */
-#define HOLD_LOOKED_MAX          200
+#define HOLD_LOOKED_MAX          320
 #define HOLD_LOOKED_BY_AXIS      2
 #define HOLD_LOOKED_BY_WAY       3
 #define HOLD_LOOKED_BY_READING   15
