@@ -23,7 +23,7 @@ HOLD_BUDGET = {"m4f": (9900, 18400), "m7": (3000, 6000)}
 HOLD_REACHED = {"m4f": (9900, 31700), "m7": (3750, 19900)}
 
 # A little above what has been reached, of the table and of the relief, and of planning a block: nothing gets worse unseen.
-REACHED = {"m4f": ((9400, 15700), (9000, 17800), 52000), "m7": ((2450, 3000), (2200, 4700), 21000)}
+REACHED = {"m4f": ((9400, 15700), (9000, 17800), 52000), "m7": ((2450, 3040), (2200, 4700), 21000)}
 
 # Instructions a second, one in each clock.
 CLOCK_HZ = {"m4f": 168e6, "m7": 216e6}
