@@ -9,11 +9,11 @@
 #define ROUNDS       1
 #define ROUNDS_FIRST 4
 
-/* Sixteenths of the window's pieces that are kept each time. */
-#define KEPT_SIXTEENTHS 9U
-
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
+
+/* And at this part of that each time that a piece leaves the tolerance. */
+#define NARROWER 0.9
 
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
@@ -24,10 +24,11 @@
  */
 #define NEARER 0.95f
 
-static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
+/* aim: a part of the tolerance */
+static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, double aim)
 {
     takt_relax_window(&scratch->relax, &s->window, &s->route,
-                      (double)s->route.part * AIM * s->route.tolerance_mm);
+                      (double)s->route.part * aim * s->route.tolerance_mm);
     takt_window_locate(&s->window, &s->route);
 }
 
@@ -43,11 +44,6 @@ static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
  */
 #define MARGIN 12
 
-static unsigned kept_most(const struct smooth *s)
-{
-    return s->window.capacity * KEPT_SIXTEENTHS / 16U;
-}
-
 /*
  * Pieces that should keep the tolerance: more than are kept, so that the next ones can do it as
  * well.
@@ -55,7 +51,7 @@ static unsigned kept_most(const struct smooth *s)
 static unsigned wanted(const struct smooth *s)
 {
     const unsigned pieces = s->window.count - 3;
-    const unsigned enough = kept_most(s) + MARGIN;
+    const unsigned enough = s->kept_most + MARGIN;
 
     TAKT_ASSERT(s->window.count > 3);
     return s->window.at_end || pieces < enough ? pieces : enough;
@@ -63,7 +59,7 @@ static unsigned wanted(const struct smooth *s)
 
 static void verified(struct smooth *s, struct verifier_verdict *v)
 {
-    takt_verifier_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
+    takt_verifier_pieces(&s->window, &s->route, wanted(s), s->kept_most, &s->order, v);
 }
 
 /* Do this many pieces come to the end of the chain? */
@@ -84,8 +80,8 @@ static unsigned kept(const struct smooth *s, unsigned good)
     if (takt_search_is_end(s, good)) {
         return good;
     }
-    if (good >= kept_most(s) + MARGIN) {
-        return kept_most(s);
+    if (good >= s->kept_most + MARGIN) {
+        return s->kept_most;
     }
     return good > MARGIN ? good - MARGIN : 0;
 }
@@ -110,13 +106,15 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ve
 
 /*
  * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to
- * each other and the curve to them. Where that brings it no nearer the curve would only come there
+ * each other and the curve to them. They aim nearer, too: beside samples that are fixed nothing is
+ * slower. Where that brings it no nearer the curve would only come there
  * later and later. A corner that was left out is noticed some way behind it: it is slow where all
  * was whole.
  */
 static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     float before_mm = SINGLE_INFINITY;
+    double aim = AIM;
 
     TAKT_ASSERT(s->window.count > SMOOTH_FIXED);
     verified(s, v);
@@ -125,9 +123,10 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ve
             break;
         }
         before_mm = v->beyond_mm > 0.0f ? v->beyond_mm : SINGLE_INFINITY;
+        aim *= NARROWER;
         takt_timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
         takt_window_extend(&s->window, &s->route);
-        relax_and_locate(s, scratch);
+        relax_and_locate(s, scratch, aim);
         verified(s, v);
     }
 }
@@ -161,11 +160,11 @@ static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned
                        struct verifier_verdict *v)
 {
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s, scratch);
+        relax_and_locate(s, scratch, AIM);
         takt_timing_again(&scratch->timing, &s->window, &s->route);
         takt_window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s, scratch);
+    relax_and_locate(s, scratch, AIM);
     slow_down(s, scratch, v);
     time_last(s, scratch, v);
     s->ends = s->finished && s->window.at_end;
