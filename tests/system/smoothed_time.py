@@ -108,20 +108,22 @@ def random_programs(number):
     compare(widened, WIDER_PART, WIDER_MOST, "few paths are slower within a wider tolerance, none much")
 
 
-def what_a_change_of_rate_is_left_is_told_by_the_axes_on_the_path():
-    """The rate took 5 s to rise where a quick axis went a short way. Parts of the exact path's time."""
-    for seed, part in ((330004, 1.75), (550114, 0.92), (330007, 1.45)):
+def take_at_most(parts, claim):
+    """Of the exact path's time, by seed."""
+    for seed, part in parts:
         program, machine = draw(seed)
         exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
-        t.check(time_s <= part * exact_s, f"the rate rises as quickly as the axes allow: {seed}", time_s, exact_s)
+        t.check(time_s <= part * exact_s, f"{claim}: {seed}", time_s, exact_s)
+
+
+def what_a_change_of_rate_is_left_is_told_by_the_axes_on_the_path():
+    """The rate took 5 s to rise where a quick axis went a short way. Parts of the exact path's time."""
+    take_at_most(((330004, 1.75), (550114, 0.92), (330007, 1.45)), "the rate rises as quickly as the axes allow")
 
 
 def joints_that_are_not_worth_passing_are_rests():
     """As the exact path has them: counted as passed they made a slow stretch seem quick. Parts of the exact path's time."""
-    for seed, part in ((880027, 0.33), (880032, 0.60), (990083, 0.89)):
-        program, machine = draw(seed)
-        exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
-        t.check(time_s <= part * exact_s, f"the quicker of curve and path is taken: {seed}", time_s, exact_s)
+    take_at_most(((880027, 0.33), (880032, 0.60), (990083, 0.89)), "the quicker of curve and path is taken")
 
 
 def what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker():
@@ -146,18 +148,12 @@ def trials_are_gone_along_beyond_the_first_window():
 
 def windows_see_as_far_as_axes_take_to_rest():
     """Nine of sixteen pieces were kept however little that left to brake in. Parts of the exact path's time."""
-    for seed, part in ((110102, 0.9), (880255, 0.185), (880352, 0.78)):
-        program, machine = draw(seed)
-        exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
-        t.check(time_s <= part * exact_s, f"a window sees to where the axes can rest: {seed}", time_s, exact_s)
+    take_at_most(((110102, 0.9), (880255, 0.185), (880352, 0.78)), "a window sees to where the axes can rest")
 
 
 def a_curve_that_leaves_the_tolerance_aims_nearer():
     """Slower beside samples that are fixed was no help: it stopped there. Parts of the exact path's time."""
-    for seed, part in ((330306, 0.26), (330008, 0.75), (330346, 0.65), (110198, 0.63)):
-        program, machine = draw(seed)
-        exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
-        t.check(time_s <= part * exact_s, f"a way on is found nearer to the path: {seed}", time_s, exact_s)
+    take_at_most(((330306, 0.26), (330008, 0.75), (330346, 0.65), (110198, 0.63)), "a way on is found nearer to the path")
 
 
 def arcs_of_any_plane_are_one_chain():
