@@ -16,10 +16,6 @@
 /* So short that changes of rate are rounded over as little as they may be. */
 #define WAY_LEAST_MM 1e-9
 
-/* Parts of the window's pieces that are kept each time, at most and at least. */
-#define KEPT_MOST  (9.0 / 16.0)
-#define KEPT_LEAST (3.0 / 16.0)
-
 /* From where the axes rest. */
 static struct verifier_way way_of(const struct smooth *s)
 {
@@ -49,16 +45,6 @@ static double find_interval(const struct smooth *s, unsigned axes)
                             (double)s->route.part * s->merge.move.tolerance_mm, s->finished);
 }
 
-/* Behind what is kept the window reaches as far as the slowest axis takes to come to rest. */
-static unsigned pieces_kept(const struct smooth *s)
-{
-    const double pieces = (double)s->window.capacity;
-    const double ramp_s = takt_interval_ramp(&s->limits, &s->route, s->route.moved, s->finished);
-
-    return (unsigned)maths_clamp(pieces - ramp_s / s->window.interval_s, KEPT_LEAST * pieces,
-                                 KEPT_MOST * pieces);
-}
-
 /* The time between samples, and what depends on it; the window is empty. */
 static void set_interval(struct smooth *s, float fine)
 {
@@ -72,7 +58,6 @@ static void set_interval(struct smooth *s, float fine)
     s->route.slots.rounded_per_s2 = (float)(s->change.wanted / s->change.rounding_s);
     takt_chord_init(&s->route.chord, s->limits.cycle_s, interval_s);
     takt_window_init(&s->window, &s->route, interval_s);
-    s->kept_most = pieces_kept(s);
 }
 
 /* In a tolerance of all its reach a chain is not held at all. */

@@ -79,13 +79,6 @@ static double longest_ramp(const struct smooth_limits *limits, unsigned axes, do
     return longest;
 }
 
-double takt_interval_ramp(const struct smooth_limits *machine, const struct route *r, unsigned axes,
-                          bool whole)
-{
-    TAKT_ASSERT(axes != 0);
-    return longest_ramp(machine, axes, whole ? takt_interval_reach(r) : MATHS_INFINITY);
-}
-
 double takt_interval_least(const struct smooth_limits *machine)
 {
     return INTERVAL_LEAST_CYCLES * machine->cycle_s;

@@ -18,13 +18,6 @@ double takt_interval_of(const struct smooth_limits *machine, const struct route 
                         double tolerance_mm, bool whole);
 
 /*
- * Time in which the slowest of these axes reaches its velocity, or what it can reach on a whole
- * route, s.
- */
-double takt_interval_ramp(const struct smooth_limits *machine, const struct route *r, unsigned axes,
-                          bool whole);
-
-/*
  * How far a route leads away from where it begins, in the direction of an axis; of bends no less.
  * mm, weighted.
  */

@@ -9,6 +9,9 @@
 #define ROUNDS       1
 #define ROUNDS_FIRST 4
 
+/* Sixteenths of the window's pieces that are kept each time. */
+#define KEPT_SIXTEENTHS 9U
+
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
 
@@ -44,6 +47,11 @@ static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, do
  */
 #define MARGIN 12
 
+static unsigned kept_most(const struct smooth *s)
+{
+    return s->window.capacity * KEPT_SIXTEENTHS / 16U;
+}
+
 /*
  * Pieces that should keep the tolerance: more than are kept, so that the next ones can do it as
  * well.
@@ -51,7 +59,7 @@ static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, do
 static unsigned wanted(const struct smooth *s)
 {
     const unsigned pieces = s->window.count - 3;
-    const unsigned enough = s->kept_most + MARGIN;
+    const unsigned enough = kept_most(s) + MARGIN;
 
     TAKT_ASSERT(s->window.count > 3);
     return s->window.at_end || pieces < enough ? pieces : enough;
@@ -59,7 +67,7 @@ static unsigned wanted(const struct smooth *s)
 
 static void verified(struct smooth *s, struct verifier_verdict *v)
 {
-    takt_verifier_pieces(&s->window, &s->route, wanted(s), s->kept_most, &s->order, v);
+    takt_verifier_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
 
 /* Do this many pieces come to the end of the chain? */
@@ -80,8 +88,8 @@ static unsigned kept(const struct smooth *s, unsigned good)
     if (takt_search_is_end(s, good)) {
         return good;
     }
-    if (good >= s->kept_most + MARGIN) {
-        return s->kept_most;
+    if (good >= kept_most(s) + MARGIN) {
+        return kept_most(s);
     }
     return good > MARGIN ? good - MARGIN : 0;
 }
@@ -107,9 +115,8 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ve
 /*
  * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to
  * each other and the curve to them. They aim nearer, too: beside samples that are fixed nothing is
- * slower. Where that brings it no nearer the curve would only come there
- * later and later. A corner that was left out is noticed some way behind it: it is slow where all
- * was whole.
+ * slower. Where that brings it no nearer the curve would only come there later and later. A corner
+ * that was left out is noticed some way behind it: it is slow where all was whole.
  */
 static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {

@@ -79,13 +79,12 @@ struct smooth {
     struct verifier_change change;
     /* where the pieces that are ready end; before there are any, where the window begins */
     struct order order;
-    struct move move;   /* of the piece taken last, */
-    uint32_t told;      /* and its element: the latest one of the pieces taken */
-    unsigned proved;    /* pieces at the window's beginning that keep the tolerance, as they were */
-    unsigned kept_most; /* pieces of a window that are kept, but for the chain's last one */
-    double known_mm;    /* end of the route when the window was filled */
-    double exact_mm;    /* to this place the path itself is taken, and on to where it rests */
-    bool exact;         /* it is */
+    struct move move; /* of the piece taken last, */
+    uint32_t told;    /* and its element: the latest one of the pieces taken */
+    unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
+    double known_mm;  /* end of the route when the window was filled */
+    double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
+    bool exact;       /* it is */
     struct worth_since since;
     bool stands;       /* a piece is still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */

@@ -146,11 +146,6 @@ def trials_are_gone_along_beyond_the_first_window():
         t.check(time_s <= 1.01 * exact_s, f"the quicker of a longer curve and the path is taken: {seed}", time_s, exact_s)
 
 
-def windows_see_as_far_as_axes_take_to_rest():
-    """Nine of sixteen pieces were kept however little that left to brake in. Parts of the exact path's time."""
-    take_at_most(((110102, 0.9), (880255, 0.185), (880352, 0.78)), "a window sees to where the axes can rest")
-
-
 def a_curve_that_leaves_the_tolerance_aims_nearer():
     """Slower beside samples that are fixed was no help: it stopped there. Parts of the exact path's time."""
     take_at_most(((330306, 0.26), (330008, 0.75), (330346, 0.65), (110198, 0.63)), "a way on is found nearer to the path")
@@ -231,7 +226,6 @@ def as_cam_systems_write():
 
 what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker()
 trials_are_gone_along_beyond_the_first_window()
-windows_see_as_far_as_axes_take_to_rest()
 a_curve_that_leaves_the_tolerance_aims_nearer()
 arcs_of_any_plane_are_one_chain()
 as_cam_systems_write()
