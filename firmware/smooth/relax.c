@@ -87,6 +87,9 @@ static void set_closest(struct relax *x, const struct window *w, const struct ro
     const double start = maths_max(from, route_element(r, closest.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, closest.element));
 
+    x->tube[i] = route_element(r, closest.element)->curved
+                     ? takt_relax_most(w, r, i - 1, tolerance_mm)
+                     : 1.0f;
     x->low[i] = single_max((float)(start - closest.at_mm) * ahead->per_mm, -straight);
     x->high[i] = single_min((float)(end - closest.at_mm) * ahead->per_mm, straight);
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -200,8 +203,9 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
     }
     takt_window_reach(w, i, &from, &to);
     takt_route_closest(r, p, from, to, &closest);
-    const float tube_mm = single_min(
-        tolerance_mm, TUBE_OF_RADIUS * takt_route_radius(r, closest.element, closest.at_mm));
+    const float tube_mm =
+        single_min(x->tube[i] * tolerance_mm,
+                   TUBE_OF_RADIUS * takt_route_radius(r, closest.element, closest.at_mm));
     const float less = closest.distance_mm > tube_mm ? 1.0f - tube_mm / closest.distance_mm : 0.0f;
 
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -233,7 +237,7 @@ static void measure_near(struct relax *x, const struct window *w, const struct r
     }
 }
 
-/* z of t in the tube of radius 1 around a straight piece of route. False: it reaches its ends. */
+/* z of t in the tube around a straight piece of route. False: it reaches its ends. */
 static bool pull_to_line(const struct relax *x, const struct window *w, unsigned groups, unsigned i,
                          float s, lanes z[])
 {
@@ -245,7 +249,8 @@ static bool pull_to_line(const struct relax *x, const struct window *w, unsigned
         square += lanes_sum(off[g] * off[g]);
     }
     const float distance = single_sqrt(square);
-    const float less = distance > 1.0f ? 1.0f - 1.0f / distance : 0.0f;
+    const float tube = x->tube[i];
+    const float less = distance > tube ? 1.0f - tube / distance : 0.0f;
 
     for (unsigned g = 0; g < groups; g++) {
         z[g] = x->near[g * w->capacity + i] - off[g] * less;
@@ -314,8 +319,9 @@ static void into_tube(struct relax *x, const struct window *w, const struct rout
     for (unsigned i = 0; i + 2 < w->count; i += SMOOTH_LANES) {
         lanes s;
         const lanes square = squares_of(x, w, r->slots.groups, i, &s);
+        const lanes tube = lanes_at(x->tube + i) - CURVED;
         const lanes_int inside = (s >= lanes_at(x->low + i)) & (s <= lanes_at(x->high + i)) &
-                                 (square - s * s <= (1.0f - CURVED) * (1.0f - CURVED));
+                                 (square - s * s <= tube * tube);
 
         for (unsigned k = 0; k < SMOOTH_LANES && lanes_any(~inside); k++) {
             if (!inside[k] && i + k > 0 && i + k + 2 < w->count) {

@@ -56,6 +56,7 @@ struct relax {
     relax_rows along;                      /* direction of the route at the closest points */
     lanes_int closest[SMOOTH_SAMPLES_MAX]; /* beside each sample on the route */
     float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as that is straight */
+    float tube[SMOOTH_SAMPLES_MAX];                          /* how near it must be, 1 at most */
     struct relax_corners corners;
 };
 

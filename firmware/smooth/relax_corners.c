@@ -19,7 +19,7 @@
 /* A mean direction shorter than this belongs to a reversal. */
 #define REVERSAL 0.3f
 
-/* A corner need be no nearer than this part of the tolerance: README.md. */
+/* Corners and bends need be no nearer than this part of the tolerance: README.md. */
 #define CORNER_LEAST 0.1f
 
 static void set_along(struct relax_corners *c, const struct route *r, uint32_t element)
@@ -43,13 +43,17 @@ static void set_along(struct relax_corners *c, const struct route *r, uint32_t e
 }
 
 /*
- * The lines through setpoints come as much nearer as they leave the curve now; but a curve that is
- * drawn into the corner bends the more.
+ * What lines through setpoints leave it by is of all of the tolerance: a curve in a part of that
+ * may use the part. A curve that is drawn into a corner bends the more.
  */
-static float most_of(const struct window *w, const struct route *r, unsigned piece,
-                     float tolerance_mm)
+float takt_relax_most(const struct window *w, const struct route *r, unsigned piece,
+                      float tolerance_mm)
 {
-    return single_max(CORNER_LEAST, 1.0f - takt_chord_leaves(w, r, piece) / tolerance_mm);
+    const float all_mm = tolerance_mm / r->part;
+    const float most = (all_mm - takt_chord_leaves(w, r, piece)) / tolerance_mm;
+
+    TAKT_ASSERT(tolerance_mm > 0.0f && r->part > 0.0f);
+    return single_clamp(most, CORNER_LEAST, 1.0f);
 }
 
 static void set_spot(struct relax_corners *c, const struct window *w, const struct route *r,
@@ -88,7 +92,7 @@ static void add_corner(struct relax_corners *c, const struct window *w, const st
     }
     c->piece[c->count] = (unsigned char)(i - 1);
     c->fraction[c->count] = (float)(at - w->at_mm[i]) / spacing;
-    c->most[c->count] = most_of(w, r, i - 1, tolerance_mm);
+    c->most[c->count] = takt_relax_most(w, r, i - 1, tolerance_mm);
     set_along(c, r, element);
     set_spot(c, w, r, element);
     c->count++;

@@ -160,6 +160,28 @@ def arcs_of_any_plane_are_one_chain():
         t.check(wide_s <= 1.01 * time_s + 3e-6 * machine.cycle_us, f"a doubled tolerance makes them no slower: {seed}", wide_s, time_s)
 
 
+def waves(tolerance, turns=24):
+    """Half circles of 4 to 7.2 mm, and some strokes between them."""
+    text, x = f"G21 G90 G17 G64 P{tolerance} F6000\nG1 X5 Y0\n", 5.0
+    for i in range(turns):
+        radius = 4.0 + 0.8 * (i % 6)
+        x += 2 * radius
+        text += f"G{2 + i % 2} X{x:.4f} Y0 R{radius:.4f}\n"
+        if i % 3 == 2:
+            text += f"G1 X{x + 1.5:.4f} Y1\nG1 X{x + 2.5:.4f} Y0\n"
+            x += 2.5
+    return text + "M2\n"
+
+
+def bends_leave_room_for_chords():
+    """Lines through setpoints leave a bend by a part of the tolerance: the curve looked for there was refused, and slow. Parts of the
+    exact path's time: A, J, P, cycle."""
+    for mm_s2, mm_s3, tolerance, cycle_us, part in ((1275.0, 275768.0, 0.0046, 4000, 0.75), (2000.0, 5e5, 0.002, 2000, 0.84)):
+        machine = hunt_programs.Machine({a: (100.0, mm_s2, mm_s3) for a in "XYZ"}, cycle_us)
+        exact_s, time_s = time_of(waves(tolerance), machine, "--exact-path"), time_of(waves(tolerance), machine)
+        t.check(time_s <= part * exact_s, f"bends leave room for chords: {cycle_us} us", time_s, exact_s)
+
+
 def twice_as_hard(machine):
     higher = copy.deepcopy(machine)
     higher.axes = {axis: (v, 2 * a, j) for axis, (v, a, j) in machine.axes.items()}
@@ -228,6 +250,7 @@ what_is_found_in_a_part_of_the_tolerance_is_taken_where_it_is_quicker()
 trials_are_gone_along_beyond_the_first_window()
 a_curve_that_leaves_the_tolerance_aims_nearer()
 arcs_of_any_plane_are_one_chain()
+bends_leave_room_for_chords()
 as_cam_systems_write()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()
