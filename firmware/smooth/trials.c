@@ -35,6 +35,9 @@
 /* What is narrower or finer takes more planning: it must take this part of the time, or less. */
 #define WORTH 0.995f
 
+/* And this part, or less, where more follows than is known: it stays for that as well. */
+#define WORTH_AHEAD 0.97f
+
 /* The chain's end, where the axes rest. */
 #define AT_REST MATHS_INFINITY
 
@@ -129,11 +132,12 @@ static enum outcome judge(struct smooth *s, union smooth_scratch *scratch, struc
     const bool ends = takt_search_is_end(s, s->ready);
     const bool last = ends || (s->window.at_end && !s->finished) || s->proved == 0;
     const double to_mm = ends ? AT_REST : s->window.at_mm[now.pieces + 1];
+    const float worth = s->finished ? WORTH : WORTH_AHEAD;
     struct worth_run run;
 
     now.starts = g->windows == 0;
     if (!g->quicker && to_mm >= best->far.to_mm) {
-        if (g->spent_s + time_to(now, g->rate, best->far.to_mm) >= WORTH * best->far.time_s) {
+        if (g->spent_s + time_to(now, g->rate, best->far.to_mm) >= worth * best->far.time_s) {
             return SLOWER;
         }
         g->quicker = true;

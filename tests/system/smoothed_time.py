@@ -182,6 +182,15 @@ def bends_leave_room_for_chords():
         t.check(time_s <= part * exact_s, f"bends leave room for chords: {cycle_us} us", time_s, exact_s)
 
 
+def rapids_choose_nothing_for_what_follows():
+    """In a part of the tolerance two rapids were 1 % quicker, and the spiral behind them 1.6 times as long."""
+    rapids = "G21 G90 G17 G64 P0.005358 F6000\nG0 X25.4\nG0 X0\n"
+    turns = "".join(f"G1 X{r * math.cos(a):.5f} Y{-r * math.sin(a):.5f}\n" for a, r in ((0.1 * i, 50.8 - 0.0508 * i) for i in range(5, 495)))
+    machines = [hunt_programs.Machine({a: (mm_s, 2081.3, 167321.0) for a in "XYZ"}, 2000) for mm_s in (100.0, 200.0)]
+    slow_s, quick_s = (time_of(rapids + turns + "M2\n", machine) for machine in machines)
+    t.check(quick_s <= 1.01 * slow_s, "quicker rapids make the spiral behind them no slower", quick_s, slow_s)
+
+
 def twice_as_hard(machine):
     higher = copy.deepcopy(machine)
     higher.axes = {axis: (v, 2 * a, j) for axis, (v, a, j) in machine.axes.items()}
@@ -251,6 +260,7 @@ trials_are_gone_along_beyond_the_first_window()
 a_curve_that_leaves_the_tolerance_aims_nearer()
 arcs_of_any_plane_are_one_chain()
 bends_leave_room_for_chords()
+rapids_choose_nothing_for_what_follows()
 as_cam_systems_write()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()
