@@ -2,7 +2,6 @@
 #include "smooth/tempo_begin.h"
 
 #include "base/assert.h"
-#include "smooth/chord.h"
 #include "smooth/single.h"
 #include "smooth/verifier.h"
 
@@ -12,49 +11,6 @@
  */
 #define THIRD_PART      0.95f
 #define THIRD_OF_SECOND 0.5f
-
-/* Corners that turn less are no matter: relax_corners.c. */
-#define CORNER_MIN 0.005f
-
-/* What lines through setpoints, a cycle apart, may leave the curve by there, of the tolerance. */
-#define CHORD_PART 0.5f
-
-/*
- * A change of velocity dv in a time T passes its corner at dv T/8, and chords of tau leave it by dv
- * tau^2/8T. Of all T for which both come to P, dv is the largest where each comes to a half: T =
- * tau. They leave it by b times as much at b: beside the corner, as many pieces as a cycle takes.
- */
-static void limit_corner(struct tempo *p, const struct window *w, const struct route *r,
-                         unsigned piece)
-{
-    const unsigned reach = r->chord.pieces;
-    const float leaves_mm = takt_chord_leaves(w, r, piece);
-    const float room_mm = CHORD_PART * (float)r->tolerance_mm;
-
-    for (unsigned i = piece > reach ? piece - reach : 0;
-         leaves_mm > room_mm && i < piece + 3 + reach && i < p->pieces + 2; i++) {
-        p->most[i] = single_min(p->most[i], room_mm / leaves_mm);
-    }
-}
-
-static void limit_corners(struct tempo *p, const struct window *w, const struct route *r)
-{
-    unsigned piece = 0;
-
-    for (uint32_t e = w->element[1] + 1; e < r->count; e++) {
-        const double at = route_element(r, e)->start_mm;
-
-        while (piece < p->pieces && w->at_mm[piece + 2] <= at) {
-            piece++;
-        }
-        if (piece == p->pieces) {
-            return;
-        }
-        if (route_turn(r, e) > CORNER_MIN && w->at_mm[piece + 1] <= at) {
-            limit_corner(p, w, r, piece);
-        }
-    }
-}
 
 /* b <= (V/x')^2 and (F/|x'|)^2 of every piece that the coefficient belongs to. */
 static void set_most(struct tempo *p, const struct window *w, const struct route *r)
@@ -78,7 +34,6 @@ static void set_most(struct tempo *p, const struct window *w, const struct route
             p->most[i + k] = single_min(p->most[i + k], feed * feed);
         }
     }
-    limit_corners(p, w, r);
     for (unsigned i = 0; i < p->pieces + 2; i++) {
         p->most[i] = single_max(p->most[i], 2.0f * RATE_SQUARED_MIN);
     }
