@@ -12,7 +12,7 @@
  * down not at all. Each cycle takes the hardest w, of a few, after which there is still a way on
  * with both kept all along it, and goes along that way if there is none. There are two such ways:
  *
- *     to rest        the change goes by -e to -c, and by e to 0 as the rate does: r = (c^2 - q^2/2)/e
+ *     to rest        the change goes by -e to -c, stays there, and goes by e to 0 as the rate does
  *     taken over     the change goes by e to 0. At a constant rate that is not above that of the
  *                    pieces everything is kept, and the trapezoidal reference can take over: its own
  *                    condition for what lies ahead is asked for there
@@ -38,12 +38,14 @@
 #include "plan/path_unit.h"
 #include "smooth/single.h"
 
-/* Parts that the ease is looked at in. */
-#define EASE_PARTS 4
-
-/* The eases tried, in parts of the hardest, beside the one that is known. */
+/*
+ * The eases and the peaks tried, in parts of the hardest that all pieces allow, beside those that
+ * are known: each with each.
+ */
 #define EASES 3
+#define PEAKS 3
 static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
+static const float peak_part[PEAKS] = {0.9f, 0.6f, 0.3f};
 
 /* Where a w can not be the next one tried is so much smaller; where it can, so much larger. */
 #define STEP_LESS  0.85f
@@ -87,24 +89,16 @@ static void advance(struct hold_state *s, double w, double t)
     s->change += t * w;
 }
 
-static void try_advance(struct hold_trial *s, float w, float t)
-{
-    s->at += t * (s->rate + t * (0.5f * s->change + t * w * (1.0f / 6.0f)));
-    s->rate = single_max(0.0f, s->rate + t * (s->change + 0.5f * t * w));
-    s->change += t * w;
-}
-
-/* Goes on past the pieces that are not too fast for the present rate: braking they stay so. */
+/* Goes on past the pieces that are fast enough for all rates to come. */
 static void pass_clear(struct hold *h, const struct path *path)
 {
-    const float rate = (float)h->place.rate;
-
-    if (h->place.change > 0.0 || (int32_t)(h->clear - h->here) < 0) {
+    if (h->most > h->clear_rate || (int32_t)(h->clear - h->here) < 0) {
         h->clear = h->here;
     }
-    for (unsigned i = 0; i < CLEAR_MAX && !(h->place.change > 0.0) &&
-                         (h->clear == h->here || !takt_hold_is_behind(h, path, h->clear)) &&
-                         takt_hold_top(h, path, h->clear) >= rate;
+    h->clear_rate = h->most;
+    for (unsigned i = 0;
+         i < CLEAR_MAX && (h->clear == h->here || !takt_hold_is_behind(h, path, h->clear)) &&
+         takt_hold_top(h, path, h->clear) >= h->most;
          i++) {
         h->clear++;
     }
@@ -160,41 +154,6 @@ static bool reference_can_take(struct hold *h, const struct path *path, const st
 }
 
 /*
- * Does the change go to another one by w within all limits? Neither is on the other side of 0. What
- * holds for all of the way together need not be looked at in parts; of these the first to be looked
- * at is where it is fastest: there it fails.
- */
-static bool can_change(struct hold *h, struct hold_trial *s, float to, float w)
-{
-    struct hold_trial at[EASE_PARTS + 1] = {*s};
-    const float t = (to - s->change) / (w * (float)EASE_PARTS);
-
-    TAKT_ASSERT(w != 0.0f);
-    if (s->change == to) {
-        return true;
-    }
-    for (unsigned i = 0; i < EASE_PARTS; i++) {
-        at[i + 1] = at[i];
-        try_advance(&at[i + 1], w, t);
-    }
-    at[EASE_PARTS].change = to;
-    *s = at[EASE_PARTS];
-    if (takt_hold_can_go(h, &at[0], s, w)) {
-        return true;
-    }
-    const bool rises = s->rate > at[0].rate;
-
-    for (unsigned i = 0; i < EASE_PARTS; i++) {
-        const struct hold_trial *part = &at[rises ? EASE_PARTS - 1 - i : i];
-
-        if (!takt_hold_can_go(h, part, part + 1, w)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/*
  * To come to rest the change goes to 0 at no higher a rate than it would have if nothing better was
  * found, r + q^2/2e: where the axes could be far faster than the feed, a softer ease would exceed
  * that. It takes over from a trapezoidal reference that has that rate already, half a window ahead.
@@ -217,7 +176,7 @@ static float highest_rate(const struct hold *h, const struct reference *l)
 /* Does a change above 0 go there? */
 static bool can_turn(struct hold *h, struct hold_trial *s, float e)
 {
-    return s->change <= 0.0f || (can_change(h, s, 0.0f, -e) && s->rate <= h->most);
+    return s->change <= 0.0f || (takt_hold_can_change(h, s, 0.0f, -e) && s->rate <= h->most);
 }
 
 /* So hard that braking ends at rest at the latest: r = q^2/2e. */
@@ -227,17 +186,25 @@ static float least_ease(const struct hold_trial *s)
 }
 
 /*
- * To rest: the change goes by -e to -c, and back to 0 by e: r + (q |q| - c^2)/2e = c^2/2e where
- * q > 0, else with -q^2.
+ * To rest: the change goes by -e to -c, stays there, and goes to 0 by e from a rate of c^2/2e on.
+ * c is so great that it need not stay there if that is less than a peak: from q it goes to 0 at
+ * r + q |q|/2e, and of that to c and back takes c^2/e.
  */
-static bool can_rest(struct hold *h, struct hold_trial s, float e, struct hold_ending *ending)
+static bool can_rest(struct hold *h, struct hold_trial s, float e, float peak,
+                     struct hold_ending *ending)
 {
-    const float peak = single_sqrt(e * s.rate + 0.5f * s.change * s.change);
+    const float most = single_sqrt(e * s.rate + 0.5f * s.change * s.change);
+    const float c = single_max(single_min(peak, most), -s.change);
 
     ending->ease = (double)e;
-    ending->peak = (double)peak;
-    return can_turn(h, &s, e) && (-s.change >= peak || can_change(h, &s, -peak, -e)) &&
-           can_change(h, &s, 0.0f, e);
+    ending->peak = (double)c;
+    if (!can_turn(h, &s, e) || (-s.change < c && !takt_hold_can_change(h, &s, -c, -e))) {
+        return false;
+    }
+    const float stays = (s.rate - c * c / (2.0f * e)) / c;
+
+    return (!(stays > 0.0f) || takt_hold_can_pass(h, &s, 0.0f, stays)) &&
+           takt_hold_can_change(h, &s, 0.0f, e);
 }
 
 /*
@@ -249,7 +216,7 @@ static bool can_ease(struct hold *h, const struct path *path, const struct refer
     ending->ease = (double)e;
     ending->peak = 0.0;
     if (h->refusals >= REFUSALS_MAX ||
-        !(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
+        !(s.change < 0.0f ? takt_hold_can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
         return false;
     }
     if (reference_can_take(h, path, l, &s, stop)) {
@@ -259,13 +226,21 @@ static bool can_ease(struct hold *h, const struct path *path, const struct refer
     return false;
 }
 
+/* The peak of the way that is known; infinite: there is none. */
+static float known_peak(const struct hold *h)
+{
+    return h->ending.peak > 0.0                            ? (float)h->ending.peak
+           : h->ending.ease > 0.0 && h->place.change < 0.0 ? -(float)h->place.change
+                                                           : SINGLE_INFINITY;
+}
+
 /*
  * How what follows this state ends: as it is known, or for what is tried first in another way, each
  * cycle the next of them. To stop it ends at rest, or where the trapezoidal reference could go on,
  * otherwise there. False: no way was found.
  */
 static bool find_ending(struct hold *h, const struct path *path, const struct reference *l,
-                        const struct hold_trial *s, float hardest, bool stop, bool first,
+                        const struct hold_trial *s, bool stop, bool first,
                         struct hold_ending *ending)
 {
     if (s->rate == 0.0f && s->change < 0.0f) {
@@ -273,13 +248,20 @@ static bool find_ending(struct hold *h, const struct path *path, const struct re
     }
     const float least = least_ease(s);
     const float known = (float)h->ending.ease;
-    const float other = single_max(least, ease_part[h->turn % EASES] * hardest);
-    const bool tries = first && other > 0.0f && other <= hardest;
 
-    return (stop && known > 0.0f && can_rest(h, *s, single_max(least, known), ending)) ||
-           (stop && tries && can_rest(h, *s, other, ending)) ||
+    if (stop && known > 0.0f && can_rest(h, *s, single_max(least, known), known_peak(h), ending)) {
+        return true;
+    }
+    if (!first) {
+        return known > least && can_ease(h, path, l, *s, known, stop, ending);
+    }
+    const struct hold_ending hardest = takt_hold_hardest(h);
+    const float other = single_max(least, ease_part[h->turn % EASES] * (float)hardest.ease);
+    const float peak = peak_part[h->turn / EASES % PEAKS] * (float)hardest.peak;
+
+    return (stop && can_rest(h, *s, other, peak, ending)) ||
            (known > least && can_ease(h, path, l, *s, known, stop, ending)) ||
-           (tries && can_ease(h, path, l, *s, other, stop, ending));
+           can_ease(h, path, l, *s, other, stop, ending);
 }
 
 /* One cycle by w; false: the rate would turn back within it. */
@@ -301,7 +283,7 @@ static bool go_by(struct hold *h, double w)
  * is tried in single precision.
  */
 static bool try_step(struct hold *h, const struct path *path, const struct reference *l, float w,
-                     float hardest, bool stop, bool first)
+                     bool stop, bool first)
 {
     const struct hold_trial here = {(float)h->place.at, (float)h->place.rate,
                                     (float)h->place.change};
@@ -310,10 +292,10 @@ static bool try_step(struct hold *h, const struct path *path, const struct refer
     struct hold_trial next = here;
     struct hold_ending ending;
 
-    try_advance(&next, by, 1.0f);
+    takt_hold_try(&next, by, 1.0f);
     if ((here.rate == 0.0f && !(w > 0.0f)) || next.rate > h->most ||
         !takt_hold_can_go(h, &here, &next, by) ||
-        !find_ending(h, path, l, &next, hardest, stop, first, &ending) ||
+        !find_ending(h, path, l, &next, stop, first, &ending) ||
         !go_by(h, turns ? -h->place.change : (double)w)) {
         return false;
     }
@@ -335,6 +317,18 @@ static double go_to(struct hold *h, double to, double w, double left)
     return left - t;
 }
 
+/* The change stays until the rate is that from which it goes to 0 by e. What is left then. */
+static double stay(struct hold *h, double e, double left)
+{
+    const double change = h->place.change;
+    const double stays = (h->place.rate - change * change / (2.0 * e)) / -change;
+    const double t = maths_clamp(stays, 0.0, left);
+
+    TAKT_ASSERT(change < 0.0);
+    advance(&h->place, 0.0, t);
+    return left - t;
+}
+
 /* As what was found last ends. */
 static void go_on_ending(struct hold *h)
 {
@@ -346,6 +340,9 @@ static void go_on_ending(struct hold *h)
     if (h->place.change > -h->ending.peak && h->ending.peak > 0.0) {
         left = go_to(h, -h->ending.peak, -e, left);
     }
+    if (h->ending.peak > 0.0 && left > 0.0) {
+        left = stay(h, e, left);
+    }
     h->ending.peak = left > 0.0 ? 0.0 : h->ending.peak;
     if (h->place.change != 0.0) {
         left = go_to(h, 0.0, h->place.change < 0.0 ? e : -e, left);
@@ -353,6 +350,18 @@ static void go_on_ending(struct hold *h)
     h->place.rate = h->place.rate < REST_PART * h->top ? 0.0 : h->place.rate;
     advance(&h->place, 0.0, left);
     h->moved = h->place.at - from;
+}
+
+/* Before a way is looked for: how fast it may get. */
+static void begin_search(struct hold *h, const struct path *path, const struct reference *l,
+                         bool stop)
+{
+    h->turn++;
+    h->refusals = 0;
+    h->most = stop ? highest_rate(h, l) : SINGLE_INFINITY;
+    if (stop) {
+        pass_clear(h, path);
+    }
 }
 
 /*
@@ -363,27 +372,22 @@ static bool find_step(struct hold *h, const struct path *path, const struct refe
 {
     const struct range w = takt_hold_steps(h);
     const float wanted = stop ? single_min(w.low, 0.0f) : single_max(w.high, 0.0f);
-    const float hardest = stop ? w.high : -w.low;
     const float rate = (float)h->place.rate;
     const float change = (float)h->place.change;
 
-    h->turn++;
-    h->refusals = 0;
-    h->most = stop ? highest_rate(h, l) : SINGLE_INFINITY;
-    if (stop && rate <= 2.0f * hardest &&
-        try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {
+    begin_search(h, path, l, stop);
+    if (stop && rate <= 2.0f * w.high && try_step(h, path, l, -rate - 1.5f * change, stop, true)) {
         return true;
     }
     for (unsigned i = 0; i < 2; i++) {
-        if (try_step(h, path, l, h->step * wanted, hardest, stop, i == 0)) {
+        if (try_step(h, path, l, h->step * wanted, stop, i == 0)) {
             h->step = i == 0 ? single_min(1.0f, STEP_MORE * h->step) : h->step;
             return true;
         }
         h->step = single_max(STEP_LEAST, STEP_LESS * h->step);
     }
-    return (wanted * change >= 0.0f &&
-            try_step(h, path, l, 0.0f, hardest, stop, h->ending.ease == 0.0)) ||
-           try_step(h, path, l, -LESS_PART * change, hardest, stop, h->ending.ease == 0.0);
+    return (wanted * change >= 0.0f && try_step(h, path, l, 0.0f, stop, h->ending.ease == 0.0)) ||
+           try_step(h, path, l, -LESS_PART * change, stop, h->ending.ease == 0.0);
 }
 
 /*
@@ -418,8 +422,6 @@ bool takt_hold_step(struct hold *h, struct path *path, const struct reference *l
 {
     TAKT_ASSERT(h->place.rate >= 0.0 && h->length > 0.0);
     takt_hold_read(h, path);
-    h->clear = stop == h->stops ? h->clear : h->here;
-    pass_clear(h, path);
     h->step = stop == h->stops ? h->step : 1.0f;
     h->stops = stop;
     if (stop && h->place.rate == 0.0) {
@@ -457,6 +459,5 @@ bool takt_hold_begin(struct hold *h, struct path *path, const struct reference *
     h->ending.ease = 0.0;
     h->stops = true;
     h->top = maths_max(h->place.rate, (double)takt_hold_top(h, path, h->here));
-    pass_clear(h, path);
     return h->place.rate > 0.0 && find_step(h, path, l, true);
 }

@@ -59,8 +59,9 @@ struct hold_state {
 };
 
 /*
- * How it goes on if nothing better is found: the change goes by -ease to -peak, if that is not 0,
- * and by ease to 0. ease 0: no way has been found yet, and there is no peak.
+ * How it goes on if nothing better is found: the change goes by -ease to -peak and stays there
+ * until the rate is that from which it goes by ease to 0; where there is no peak it goes there at
+ * once. ease 0: no way has been found yet.
  */
 struct hold_ending {
     double ease;
@@ -90,7 +91,9 @@ struct hold {
     float turn_cos, turn_sin;
     float off_second; /* derivatives of an arc differ from those of its pieces by this at most */
     float off_third;
-    uint32_t clear; /* pieces from the first to before this one are fast enough for the rate */
+    /* pieces from the first to before this one are fast enough for this rate */
+    uint32_t clear;
+    float clear_rate;
     struct hold_state place;
     double moved; /* pieces, in the last cycle */
     struct hold_ending ending;

@@ -4,6 +4,7 @@
  */
 #include "motion/hold_axes.h"
 
+#include "base/assert.h"
 #include "smooth/single.h"
 
 /*
@@ -11,6 +12,9 @@
  * cycle.
  */
 #define CHANGE_PART 0.2f
+
+/* Parts that a way is looked at in. */
+#define WAY_PARTS 4
 
 /* Rounding. */
 #define SLACK 1e-5f
@@ -191,6 +195,54 @@ bool takt_hold_can_go(struct hold *h, const struct hold_trial *a, const struct h
     return true;
 }
 
+/* u + r t + q t^2/2 + w t^3/6 */
+void takt_hold_try(struct hold_trial *s, float w, float time)
+{
+    s->at += time * (s->rate + time * (0.5f * s->change + time * w * (1.0f / 6.0f)));
+    s->rate = single_max(0.0f, s->rate + time * (s->change + 0.5f * time * w));
+    s->change += time * w;
+}
+
+/*
+ * What holds for all of the way together need not be looked at in parts; of these the first to be
+ * looked at is where it is fastest: there it fails.
+ */
+bool takt_hold_can_pass(struct hold *h, struct hold_trial *s, float w, float time)
+{
+    struct hold_trial at[WAY_PARTS + 1] = {*s};
+
+    for (unsigned i = 0; i < WAY_PARTS; i++) {
+        at[i + 1] = at[i];
+        takt_hold_try(&at[i + 1], w, time / (float)WAY_PARTS);
+    }
+    *s = at[WAY_PARTS];
+    if (takt_hold_can_go(h, &at[0], s, w)) {
+        return true;
+    }
+    const bool rises = s->rate > at[0].rate;
+
+    for (unsigned i = 0; i < WAY_PARTS; i++) {
+        const struct hold_trial *part = &at[rises ? WAY_PARTS - 1 - i : i];
+
+        if (!takt_hold_can_go(h, part, part + 1, w)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool takt_hold_can_change(struct hold *h, struct hold_trial *s, float to, float w)
+{
+    TAKT_ASSERT(w != 0.0f);
+    if (s->change == to) {
+        return true;
+    }
+    const bool can = takt_hold_can_pass(h, s, w, (to - s->change) / w);
+
+    s->change = to;
+    return can;
+}
+
 /*
  * What an axis has left for x' w in this cycle: of J beside 3 x'' r q + x''' r^3, of A beside x'
  * q + x'' r^2.
@@ -204,6 +256,11 @@ static struct range left_of(const struct hold *h, unsigned i, float x1, float x2
 
     return (struct range){-single_min(h->jerk[i] + j, h->acceleration[i] + a),
                           single_min(h->jerk[i] - j, h->acceleration[i] - a)};
+}
+
+static float most_change(const struct hold *h)
+{
+    return CHANGE_PART * (float)h->top;
 }
 
 /* The part of the range of w that a range of x' w allows. */
@@ -220,7 +277,7 @@ struct range takt_hold_steps(const struct hold *h)
 {
     const float *p = hold_piece(h, h->here);
     const float f = (float)h->place.at;
-    const float most = CHANGE_PART * (float)h->top;
+    const float most = most_change(h);
     struct range w = {-most, most};
 
     for (unsigned i = 0; i < h->axes; i++) {
@@ -231,4 +288,21 @@ struct range takt_hold_steps(const struct hold *h)
         w = over(left_of(h, i, first, bend + f * third, third), first, w);
     }
     return w;
+}
+
+/* x' w within J, x' q within A and 3 x'' r q within J, of all axes. */
+struct hold_ending takt_hold_hardest(const struct hold *h)
+{
+    const float least = 1.0f / most_change(h);
+    const float rate = (float)h->place.rate;
+    float ease = least;
+    float peak = least;
+
+    for (uint32_t k = h->here; k != h->end; k++) {
+        const float *most = hold_piece(h, k) + hold_stride(h->axes) - HOLD_BOUNDS;
+
+        ease = single_max(ease, most[3]);
+        peak = single_max(peak, single_max(most[1], 3.0f * rate * most[4]));
+    }
+    return (struct hold_ending){(double)(1.0f / ease), (double)(1.0f / peak)};
 }

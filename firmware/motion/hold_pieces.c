@@ -263,6 +263,20 @@ static bool begin_parts(struct hold *h, struct path *path, double way)
 
 /* -- all of them -- */
 
+bool takt_hold_stands(const struct path *path)
+{
+    const uint32_t first = path->first;
+    struct point c[4];
+
+    if (!path_at(path, first)->smooth ||
+        (first + 1 != path->closed && length_of(path, first + 1) == length_of(path, first))) {
+        return false; /* pieces of a curve are as long as the next one */
+    }
+    takt_ring_control(&path->ring, first, c);
+    return point_is_same(&c[0], &c[1]) && point_is_same(&c[1], &c[2]) &&
+           point_is_same(&c[2], &c[3]);
+}
+
 /* Is there another piece of the curve? Of a smoothed one it may not be known yet. */
 static bool has_next(struct hold *h, const struct path *path)
 {
@@ -379,7 +393,7 @@ bool takt_hold_look(struct hold *h, struct path *path, double at, double way)
     h->place.at -= smooth ? 0.0 : (double)h->here;
     if (other || (int32_t)(h->end - h->here) <= 0) {
         h->end = h->here;
-        h->clear = h->here;
+        h->clear_rate = 0.0f;
         h->whole = false;
     }
     takt_hold_read(h, path);

@@ -17,6 +17,9 @@
  */
 bool takt_hold_look(struct hold *h, struct path *path, double at, double way);
 
+/* Do the axes stand on all of the path's first block, as a smoothed curve does at its ends? */
+bool takt_hold_stands(const struct path *path);
+
 /* A few more of them, as one cycle has time for. */
 void takt_hold_read(struct hold *h, struct path *path);
 

@@ -38,7 +38,7 @@
 #define HOLD_CYCLES_MIN      4.0
 #define HOLD_PARTS           1.5
 #define HOLD_CYCLES          10.0
-#define SLOW_OF_TEN_THOUSAND 2
+#define SLOW_OF_TEN_THOUSAND 1
 
 /* Tenths of V/A + A/J that holds are counted in. */
 #define TENTHS_MAX 50

@@ -21,6 +21,8 @@ static struct path path;
 static struct motion motion;
 static struct motion_operator asked;
 static unsigned pushed;
+static double feed_mm_s;
+static double tolerance_mm;
 
 static void set_up(double jerk_mm_s3)
 {
@@ -33,6 +35,8 @@ static void set_up(double jerk_mm_s3)
     takt_motion_init(&motion, &path, &start, false);
     asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     pushed = 0;
+    feed_mm_s = FEED_MM_S;
+    tolerance_mm = 0.01;
 }
 
 void setUp(void)
@@ -51,8 +55,8 @@ static void push_next(void)
     memset(&m, 0, sizeof(m));
     m.kind = pushed < MOVES ? MOVE_FEED : MOVE_END;
     m.path = PATH_BLEND;
-    m.tolerance_mm = 0.01;
-    m.feed_mm_s = FEED_MM_S;
+    m.tolerance_mm = tolerance_mm;
+    m.feed_mm_s = feed_mm_s;
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     m.turns = 1;
     pushed++;
@@ -123,8 +127,11 @@ static void test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself(void)
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
-/* That is one piece of another length than those of the curve, by which a hold counts. */
-static void test_no_hold_begins_where_the_axes_stand_before_the_curve(void)
+/*
+ * That is one piece of another length than those of the curve, by which a hold counts. In a cycle
+ * of it the setpoint's rate begins to rise.
+ */
+static void test_where_the_axes_stand_before_the_curve_they_are_at_rest_at_once(void)
 {
     unsigned moments = 0;
 
@@ -132,16 +139,35 @@ static void test_no_hold_begins_where_the_axes_stand_before_the_curve(void)
         setUp();
         run(held);
         const bool moves = motion.feed > 0.0 || motion.reference.feed > 0.0;
+        const unsigned cycles = cycles_to_rest();
 
-        asked.hold = true;
-        run(1);
         if (path.first > 0) {
             break;
         }
         moments += moves ? 1 : 0;
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(2, cycles);
         TEST_ASSERT_FALSE(motion.holds);
+        run(10);
+        TEST_ASSERT_TRUE(takt_motion_rests(&motion));
+        asked.hold = false;
+        run(300);
+        TEST_ASSERT_FALSE(takt_motion_rests(&motion));
     }
     TEST_ASSERT_TRUE(moments > 0);
+}
+
+/*
+ * Half the window of its trapezoidal reference is more pieces than are read then, with little jerk.
+ */
+static void test_a_hold_begins_while_the_axes_speed_up(void)
+{
+    for (unsigned held = 100; held < 400; held += 7) {
+        set_up(5000.0);
+        feed_mm_s = limits.velocity_mm_s[AXIS_X];
+        tolerance_mm = 0.0005;
+        run(held);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(165, cycles_to_rest());
+    }
 }
 
 /*
@@ -171,7 +197,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_hold_from_any_moment_takes_hardly_longer_than_its_ramp);
     RUN_TEST(test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself);
-    RUN_TEST(test_no_hold_begins_where_the_axes_stand_before_the_curve);
+    RUN_TEST(test_where_the_axes_stand_before_the_curve_they_are_at_rest_at_once);
+    RUN_TEST(test_a_hold_begins_while_the_axes_speed_up);
     RUN_TEST(test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_that_brakes);
     return UNITY_END();
 }

@@ -22,6 +22,7 @@ static struct motion_operator asked;
 static enum move_kind kind;  /* MOVE_ARC_CCW, or a line */
 static double end_radius_mm; /* of the circle */
 static bool pushed;
+static bool bends; /* a large circle follows the line */
 
 /* The setpoint and the two before, and the most that second differences have been of the limit. */
 static struct point setpoint[3];
@@ -46,6 +47,7 @@ static void set_up(enum move_kind one, double velocity_mm_s, double jerk_mm_s3,
     asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     end_radius_mm = RADIUS_MM;
     pushed = false;
+    bends = false;
     acceleration = 0.0;
     for (unsigned i = 0; i < 3; i++) {
         setpoint[i] = start;
@@ -61,7 +63,7 @@ void tearDown(void)
 {
 }
 
-static void push(enum move_kind one, double x_mm)
+static struct move move_to(enum move_kind one, double x_mm)
 {
     struct move m;
 
@@ -72,6 +74,11 @@ static void push(enum move_kind one, double x_mm)
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     m.turns = one == MOVE_ARC_CCW ? TURNS : 1;
     m.end.at[AXIS_X] = x_mm;
+    return m;
+}
+
+static void push(struct move m)
+{
     takt_path_push(&path, &m);
 }
 
@@ -82,8 +89,17 @@ static void plan(void)
     }
     takt_path_go_on(&path);
     if (!pushed) {
-        push(kind, kind == MOVE_ARC_CCW ? end_radius_mm : 5.0 * limits.velocity_mm_s[AXIS_X]);
-        push(MOVE_END, 0.0);
+        const double far_mm = 5.0 * limits.velocity_mm_s[AXIS_X];
+
+        push(move_to(kind, kind == MOVE_ARC_CCW ? end_radius_mm : far_mm));
+        if (bends) {
+            struct move circle = move_to(MOVE_ARC_CCW, far_mm);
+
+            circle.centre_mm[0] = far_mm;
+            circle.centre_mm[1] = 400.0;
+            push(circle);
+        }
+        push(move_to(MOVE_END, 0.0));
         takt_path_finish(&path);
         pushed = true;
     }
@@ -191,6 +207,21 @@ static void test_the_trapezoidal_reference_goes_on_where_it_can_rest_before_the_
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
+/* It need not be landed on the junction first. */
+static void test_a_hold_takes_over_from_a_landing(void)
+{
+    set_up(MOVE_FEED, 100.0, 20000.0, RAMP_PROFILE_JERK);
+    bends = true;
+    do {
+        run(1);
+    } while (!motion.reference.run.active ||
+             motion.reference.run.cycle < motion.reference.run.ramp);
+    (void)cycles_to_rest();
+    TEST_ASSERT_TRUE(motion.holds);
+    TEST_ASSERT_EQUAL_UINT32(0, path.first);
+    assert_goes_on_to_the_end();
+}
+
 /* 240 cycles of one window and 120 of another leave no memory for pieces. */
 static void test_where_the_averages_leave_no_memory_the_trapezoidal_reference_brakes(void)
 {
@@ -225,6 +256,7 @@ int main(void)
     RUN_TEST(test_on_an_arc_whose_radius_changes_a_little_no_acceleration_is_exceeded);
     RUN_TEST(test_a_hold_on_a_line_does_not_take_what_the_law_of_ramps_takes);
     RUN_TEST(test_the_trapezoidal_reference_goes_on_where_it_can_rest_before_the_end);
+    RUN_TEST(test_a_hold_takes_over_from_a_landing);
     RUN_TEST(test_where_the_averages_leave_no_memory_the_trapezoidal_reference_brakes);
     RUN_TEST(test_pieces_lie_behind_the_inputs_of_the_averages);
     return UNITY_END();
