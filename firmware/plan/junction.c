@@ -37,12 +37,21 @@
 
 #include "base/assert.h"
 #include "base/maths.h"
+#include "plan/ramp_profile.h"
+
+/* The line between two setpoints is near enough while turn v + bend v^2 <= within_mm. */
+struct nearness {
+    double turn_s;
+    double bend_s2_mm;
+    double within_mm;
+};
 
 struct junction_steps {
-    double p_s_mm;      /* P, s/mm */
-    double q_s2_mm2;    /* Q, s2/mm2 */
-    double r_s_mm;      /* R, s/mm */
-    double within_mm_s; /* feed up to which the line between two setpoints is near enough */
+    double p_s_mm;   /* P, s/mm */
+    double q_s2_mm2; /* Q, s2/mm2 */
+    double r_s_mm;   /* R, s/mm */
+    struct nearness chord;
+    struct nearness tolerance;
 };
 
 /* Tangent and curvature by the path, at a place of a block's curve. */
@@ -74,17 +83,32 @@ static double tolerance_of(const struct block *b)
                                                                     : MATHS_INFINITY;
 }
 
-/*
- * Largest v with d v cycle / 4 + k v^2 cycle^2 / 8 <= within, d the change of tangent and k the
- * curvature.
- */
-static double feed_within(double d, double k, double within_mm, double cycle_s)
+/* d v cycle / 4 + k v^2 cycle^2 / 8 <= within, d the change of tangent and k the curvature. */
+static struct nearness nearness_of(double d, double k, double within_mm, double cycle_s)
 {
-    const double c = d * cycle_s / (4.0 * within_mm);
-    const double root = c + maths_sqrt(c * c + k * cycle_s * cycle_s / (2.0 * within_mm));
-
     TAKT_ASSERT(d >= 0.0 && k >= 0.0 && within_mm > 0.0);
-    return root > 0.0 ? 2.0 / root : MATHS_INFINITY;
+    if (within_mm == MATHS_INFINITY) {
+        return (struct nearness){0.0, 0.0, 0.0};
+    }
+    return (struct nearness){0.25 * d * cycle_s, 0.125 * k * cycle_s * cycle_s, within_mm};
+}
+
+/* The largest v of a junction by itself. */
+static double near_alone(const struct nearness *n)
+{
+    const double root =
+        n->turn_s + maths_sqrt(n->turn_s * n->turn_s + 4.0 * n->bend_s2_mm * n->within_mm);
+
+    return root > 0.0 ? 2.0 * n->within_mm / root : MATHS_INFINITY;
+}
+
+/* Of v / reach corners on a line: turn v^2 / reach + bend v^2 <= within. */
+static double near_crowded(const struct nearness *n, double reach_mm_s)
+{
+    const double square = n->turn_s / reach_mm_s + n->bend_s2_mm;
+
+    TAKT_ASSERT(reach_mm_s > 0.0);
+    return square > 0.0 ? maths_sqrt(n->within_mm / square) : MATHS_INFINITY;
 }
 
 static void junction_measure(const struct block *before, const struct block *after,
@@ -102,9 +126,9 @@ static void junction_measure(const struct block *before, const struct block *aft
     const double tolerance_mm = maths_min(tolerance_of(before), tolerance_of(after));
 
     *steps = (struct junction_steps){
-        .within_mm_s = maths_min(
-            feed_within(apart(&t0, &t1, AXIS_LINEAR_COUNT), 0.0, limits->chord_error_max_mm, cycle),
-            feed_within(apart(&t0, &t1, AXIS_COUNT), curvature, tolerance_mm, cycle))};
+        .chord =
+            nearness_of(apart(&t0, &t1, AXIS_LINEAR_COUNT), 0.0, limits->chord_error_max_mm, cycle),
+        .tolerance = nearness_of(apart(&t0, &t1, AXIS_COUNT), curvature, tolerance_mm, cycle)};
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
             const double d = maths_abs(t1.at[i] - t0.at[i]);
@@ -131,14 +155,15 @@ static double alone_feed(const struct junction_steps *steps)
     const double by_acceleration =
         steps->r_s_mm > 0.0 ? JUNCTION_ACCELERATION / steps->r_s_mm : MATHS_INFINITY;
 
-    return maths_min(maths_min(by_jerk, by_acceleration), steps->within_mm_s);
+    return maths_min(maths_min(by_jerk, by_acceleration),
+                     maths_min(near_alone(&steps->chord), near_alone(&steps->tolerance)));
 }
 
 /*
  * The same with f = reach / v, reach = length / (6 cycles) the feed at which blocks stop being
- * short: P v^2 + Q v^3 <= jerk budget reach, R v^2 <= acceleration reach and v^2 <= reach times the
- * feed that is near enough. v0, where the larger of the first two terms meets the right side, then
- * scaled by the root of the excess: exact for one term, safe for both.
+ * short: P v^2 + Q v^3 <= jerk budget reach, R v^2 <= acceleration reach, and near enough. v0,
+ * where the larger of the first two terms meets the right side, then scaled by the root of the
+ * excess: exact for one term, safe for both.
  */
 static double crowded_feed(const struct junction_steps *steps, double reach_mm_s)
 {
@@ -160,7 +185,8 @@ static double crowded_feed(const struct junction_steps *steps, double reach_mm_s
     if (steps->r_s_mm > 0.0) {
         v = maths_min(v, maths_sqrt(JUNCTION_ACCELERATION * reach_mm_s / steps->r_s_mm));
     }
-    return maths_min(v, maths_sqrt(reach_mm_s * steps->within_mm_s));
+    return maths_min(v, maths_min(near_crowded(&steps->chord, reach_mm_s),
+                                  near_crowded(&steps->tolerance, reach_mm_s)));
 }
 
 /*
@@ -274,6 +300,51 @@ static void junction_pass(struct block *before, const struct block *after, doubl
     before->jerk_budget_junction = jerk_budget;
 }
 
+/*
+ * Does a block lose nothing by going along at the feed v < V of a junction beside it? By its
+ * programmed feed it is no faster; or at v it takes no longer than what that junction makes of its
+ * time anyway: half of it from rest to rest, 2 L / F where that reaches F T(F) = L; and half of
+ * what it takes to land at v, which it must keep for the windows of ramps before, and to get up to
+ * V and back.
+ */
+static bool may_keep(const struct block *b, double v, double top, const struct plan_limits *limits)
+{
+    const double j = b->j_mm_s3;
+
+    if (v >= b->feed_program_mm_s) {
+        return true;
+    }
+    if (b->length_mm > v * ramp_s(v, b->a_mm_s2, j)) {
+        return false;
+    }
+    const double a = maths_min(b->a_mm_s2, maths_sqrt(top * j));
+    const double window_s = takt_ramp_profile_windows(limits->profile) * a / j;
+
+    return b->length_mm <= v * (0.5 * window_s + ramp_s(top - v, a, j));
+}
+
+/* The blocks beside a junction of feed v: one that loses nothing by it goes along at v. */
+static double meet_at(struct block *before, struct block *after, double v,
+                      const struct plan_limits *limits)
+{
+    struct block *shorter = after->length_mm < before->length_mm ? after : before;
+    struct block *other = shorter == before ? after : before;
+    const double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
+
+    if (v >= top) {
+        return top;
+    }
+    if (may_keep(shorter, v, top, limits)) {
+        takt_block_cap_feed(shorter, v, GOVERNOR_SHORT);
+        return v;
+    }
+    if (may_keep(other, v, top, limits)) {
+        takt_block_cap_feed(other, v, GOVERNOR_SHORT);
+        return v;
+    }
+    return top;
+}
+
 void takt_junction_form(struct block *before, struct block *after, const struct plan_limits *limits)
 {
     const double apart_s = JUNCTION_CYCLES_APART * limits->cycle_s;
@@ -288,11 +359,12 @@ void takt_junction_form(struct block *before, struct block *after, const struct 
     }
     junction_measure(before, after, limits, &steps);
     double v = alone_feed(&steps);
-    const double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
+    double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
 
     if (maths_min(v, top) > reach_mm_s) {
         v = crowded_feed(&steps, reach_mm_s);
     }
+    top = meet_at(before, after, v, limits);
     const double jerk_budget =
         junction_jerk_budget(&steps, maths_min(v, top), junction_crowding(before, after, apart_s));
 

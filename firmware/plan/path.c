@@ -18,6 +18,7 @@ _Static_assert(JERK_BUDGET_BLOCKS_MAX <= PATH_MODES_MAX,
 static void init_smooth(struct path *p)
 {
     struct smooth_limits limits = {.axes = p->limits.axes,
+                                   .chord_error_max_mm = p->limits.chord_error_max_mm,
                                    .cycle_s = p->limits.cycle_s,
                                    .windows = takt_ramp_profile_windows(p->limits.profile)};
 

@@ -52,7 +52,8 @@ static void bound_line(const struct route *r, const struct smooth_limits *machin
 
 /*
  * The highest feed at a junction: D v / cycle^2 + 3/4 K v^2 / cycle within a part of J, D v / cycle
- * of A (plan/junction.c).
+ * of A, |D| v cycle / 4 over X, Y and Z within the largest chord error; beside blocks shorter than
+ * some cycles at v less, v^2 up to that times reach (plan/junction.c).
  */
 static float alone_feed(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                         float reach)
@@ -61,6 +62,8 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
     float d[2][AXIS_COUNT];
     float k[2][AXIS_COUNT];
     float feed = SINGLE_INFINITY;
+    float curved = SINGLE_INFINITY;
+    float square = 0.0f;
 
     takt_route_corner(r, index, d[0], d[1]);
     (void)takt_route_curvature(r, index - 1, route_element(r, index)->start_mm, k[0]);
@@ -72,16 +75,22 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
         const float j = junction_share * (float)machine->jerk_mm_s3[axis] * cycle;
         const float a = junction_acceleration * (float)machine->acceleration_mm_s2[axis] * cycle;
 
+        square += axis < AXIS_LINEAR_COUNT ? turn * turn : 0.0f;
         if (turn > 0.0f) {
             const float most = single_min(j * cycle, a) / turn;
 
-            feed = single_min(feed, most > reach ? single_sqrt(most * reach) : most);
+            feed = single_min(feed, most);
         }
         if (jump > 0.0f) {
-            feed = single_min(feed, single_sqrt(j / ((float)JUNCTION_CURVATURE * jump)));
+            curved = single_min(curved, single_sqrt(j / ((float)JUNCTION_CURVATURE * jump)));
         }
     }
-    return feed;
+    if (square > 0.0f) {
+        feed = single_min(feed, 4.0f * (float)machine->chord_error_max_mm /
+                                    (cycle * single_sqrt(square)));
+    }
+    feed = feed > reach ? single_sqrt(feed * reach) : feed;
+    return single_min(feed, curved);
 }
 
 static float length_of(const struct route *r, uint32_t index)
@@ -147,6 +156,15 @@ static void bound_ramps(const struct arc_limits *b, struct course *c)
     c->jerk = ramp_along * b->jerk - c->feed * normal / b->radius;
 }
 
+/* v = 2/cycle sqrt(d (2 R - d)): chords of a cycle leave a circle by d (plan/block.c). */
+static float chord_feed(const struct smooth_limits *machine, float radius)
+{
+    const float d = (float)machine->chord_error_max_mm;
+
+    return radius > d ? 2.0f / (float)machine->cycle_s * single_sqrt(d * (2.0f * radius - d))
+                      : SINGLE_INFINITY;
+}
+
 /*
  * v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A: of the machine's limits, which a smoothed
  * curve may not have all of.
@@ -168,6 +186,7 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
                          along_curved(r, machine->velocity_mm_s, index, k));
     c->feed = single_min(c->feed, takt_single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
     c->feed = single_min(c->feed, single_sqrt(arc_acceleration * b.acceleration * b.radius));
+    c->feed = single_min(c->feed, chord_feed(machine, b.radius));
     bound_ramps(&b, c);
 }
 
@@ -250,6 +269,20 @@ static float lost(float low, float high, float a)
 }
 
 /*
+ * The feed of an element beside a junction is that of the junction if it would be gone along in
+ * less than some cycles, and the other one is not shorter still (plan/junction.c).
+ */
+static float short_feed(const struct route *r, const struct smooth_limits *machine,
+                        const struct span *s, uint32_t index)
+{
+    const float first = index == s->first && s->start > 0.0f ? s->start : SINGLE_INFINITY;
+    const float last = index + 1 == s->end && s->stop > 0.0f ? s->stop : SINGLE_INFINITY;
+    const float apart = cycles_apart * (float)machine->cycle_s;
+
+    return single_max(single_min(first, last), length_of(r, index) / apart);
+}
+
+/*
  * With ramps of acceleration a, rounded over a window of cycles of a/J, times what the law makes of
  * it: the window is lost once, but for what is gone in it at both ends (plan/span.c).
  */
@@ -265,7 +298,7 @@ static float time_with(const struct route *r, const struct smooth_limits *machin
     for (uint32_t i = s->first; i < s->end; i++) {
         const struct course c = course_of(r, machine, s->from_mm, i);
 
-        last = single_min(c.feed, peak);
+        last = single_min(single_min(c.feed, peak), short_feed(r, machine, s, i));
         first = i == s->first ? last : first;
         time += c.length / last;
     }

@@ -32,7 +32,8 @@ struct smooth_limits {
     double velocity_mm_s[AXIS_COUNT];
     double acceleration_mm_s2[AXIS_COUNT];
     double jerk_mm_s3[AXIS_COUNT];
-    double cycle_s; /* control cycle */
+    double chord_error_max_mm; /* of the exact path */
+    double cycle_s;            /* control cycle */
     /* all windows of its ramp law together, as a multiple of the first one (plan/ramp_profile.h) */
     double windows;
 };

@@ -230,6 +230,40 @@ def around(lines_of_turn, turns, pitch_mm):
     return [(pitch_mm * a * math.cos(a), pitch_mm * a * math.sin(a)) for a in angles]
 
 
+def short_arcs_inwards(tolerance):
+    """A spiral of arcs of a tenth of a radian, down to half a mm each."""
+    text = [f"G21 G90 G17 G64 P{tolerance} F6000", "G1 X12 Y0"]
+    x, y = 12.0, 0.0
+    for i in range(1, 400):
+        radius = 12.0 - 0.02 * i
+        to_x, to_y = radius * math.cos(0.1 * i), radius * math.sin(0.1 * i)
+        half = math.hypot(to_x - x, to_y - y) / 2
+        off = math.sqrt((radius + 0.01) ** 2 - half**2) / (2 * half)
+        i_mm, j_mm = (to_x - x) / 2 - off * (to_y - y), (to_y - y) / 2 + off * (to_x - x)
+        text.append(f"G3 X{to_x:.5f} Y{to_y:.5f} I{i_mm:.5f} J{j_mm:.5f}")
+        x, y = round(to_x, 5), round(to_y, 5)
+    return "\n".join(text) + "\nM2\n"
+
+
+def on_long_cycles_the_path_is_timed_with_its_chords():
+    """It was thought to be quicker than it is; and on short arcs within a tolerance stopped at each."""
+    for name, program, (a, j), part in (
+        ("lines that merge to some with larger corners", lines(bends_slowly(), 0.254), (5056, 1.065e6), 0.97),
+        ("arcs gone along in less than some cycles", short_arcs_inwards(0.0048), (3289, 2.54e6), 1.01),
+    ):
+        machine = hunt_programs.Machine({axis: (100.0, a, j) for axis in "XYZ"}, 4000)
+        exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
+        t.check(time_s <= part * exact_s, f"no slower than the exact path: {name}", time_s, exact_s)
+
+
+def what_an_override_may_ask_for_stops_nobody():
+    """Junctions that are fast enough for the programmed feed, and not for 120 % of it, are not landed on."""
+    program = lines(bends_slowly(), 0.0021)
+    slow, fast = (hunt_programs.Machine({axis: (mm_s, 4474, 629120) for axis in "XYZ"}, 2000) for mm_s in (100.0, 200.0))
+    slow_s, fast_s = time_of(program, slow, "--exact-path"), time_of(program, fast, "--exact-path")
+    t.check(fast_s <= slow_s, "an exact path is no slower for faster axes", fast_s, slow_s)
+
+
 def pockets(lines_of_one, number):
     """Contours, between which Z is raised."""
     places = []
@@ -262,6 +296,8 @@ arcs_of_any_plane_are_one_chain()
 bends_leave_room_for_chords()
 rapids_choose_nothing_for_what_follows()
 as_cam_systems_write()
+on_long_cycles_the_path_is_timed_with_its_chords()
+what_an_override_may_ask_for_stops_nobody()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()
 joints_that_are_not_worth_passing_are_rests()

@@ -152,6 +152,31 @@ static void test_a_turn_that_costs_more_than_a_stop_is_stopped_at(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 50.0, (double)path_at(&path, 1)->feed_junction_mm_s);
 }
 
+/* To land there would cost every feed up to 100 % what an override above that may ask for. */
+static void test_a_turn_that_is_fast_enough_for_the_programmed_feed_is_not_landed_on(void)
+{
+    const double half_rad = 0.5 * 50000.0 * 1e-6;
+
+    push(10.0, 0.0, 80.0);
+    push(10.0, half_rad / 90.0, 80.0);
+    takt_path_finish(&path);
+    TEST_ASSERT_EQUAL(JUNCTION_PASSED, path_at(&path, 0)->end);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 90.0, takt_path_block_top(path_at(&path, 0)));
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 96.0, takt_path_block_top(path_at(&path, 1)));
+}
+
+/* It is too short for more than the junction's feed and to land again. */
+static void test_a_short_block_is_gone_along_at_the_feed_of_the_turn_beside_it(void)
+{
+    const double half_rad = 0.5 * 50000.0 * 1e-6;
+
+    push(10.0, 0.0, 100.0);
+    push(0.5, half_rad / 50.0, 100.0);
+    takt_path_finish(&path);
+    TEST_ASSERT_EQUAL(JUNCTION_PASSED, path_at(&path, 0)->end);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 50.0, takt_path_block_top(path_at(&path, 1)));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -162,5 +187,7 @@ int main(void)
     RUN_TEST(test_a_block_counts_as_leaving_the_largest_share_until_it_is_closed);
     RUN_TEST(test_a_stop_closes_what_is_before_it);
     RUN_TEST(test_a_turn_that_costs_more_than_a_stop_is_stopped_at);
+    RUN_TEST(test_a_turn_that_is_fast_enough_for_the_programmed_feed_is_not_landed_on);
+    RUN_TEST(test_a_short_block_is_gone_along_at_the_feed_of_the_turn_beside_it);
     return UNITY_END();
 }

@@ -17,7 +17,8 @@ static struct window window;
 
 void setUp(void)
 {
-    limits = (struct smooth_limits){.axes = 7, .cycle_s = CYCLE_S, .windows = 1.0};
+    limits = (struct smooth_limits){
+        .axes = 7, .chord_error_max_mm = 1e-3, .cycle_s = CYCLE_S, .windows = 1.0};
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits.velocity_mm_s[i] = 100.0;
         limits.acceleration_mm_s2[i] = 1000.0;

@@ -20,6 +20,7 @@ void setUp(void)
 {
     memset(&limits, 0, sizeof limits);
     limits.axes = 3;
+    limits.chord_error_max_mm = 1e-3;
     limits.cycle_s = CYCLE_S;
     limits.windows = 1.0;
     for (int i = 0; i < 2; i++) {

@@ -19,6 +19,7 @@ static const struct smooth_limits mill = {
     .velocity_mm_s = {100.0, 100.0, 100.0},
     .acceleration_mm_s2 = {1000.0, 1000.0, 1000.0},
     .jerk_mm_s3 = {50000.0, 50000.0, 50000.0},
+    .chord_error_max_mm = 1e-3,
     .cycle_s = 1e-3,
     .windows = 1.0,
 };

@@ -14,7 +14,7 @@ static struct timing timing;
 /* Six axes of equal limits: more than one operation works at. */
 void setUp(void)
 {
-    struct smooth_limits limits = {.axes = 63, .cycle_s = 1e-3};
+    struct smooth_limits limits = {.axes = 63, .chord_error_max_mm = 1e-3, .cycle_s = 1e-3};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits.velocity_mm_s[i] = 100.0;
