@@ -41,19 +41,12 @@ static void follow_hold(struct motion *m)
     m->lag = h->place.rate > 0.0 ? (double)(int64_t)(ahead - start) - at : 0.0;
 }
 
-/* The setpoint from the start of the path's first block, path units. */
-static double setpoint_at(const struct motion *m)
-{
-    return (double)(int64_t)(m->reference.at - path_start(m->path, m->path->first)) - m->lag;
-}
-
 /* Where the axes stand anyway they are at rest at once, and the trapezoidal reference with them. */
 static void stand(struct motion *m)
 {
     struct reference *l = &m->reference;
-    const uint64_t at = path_start(m->path, m->path->first) + (uint64_t)setpoint_at(m);
 
-    takt_reference_follow(l, at, 0.0, m->setpoint);
+    takt_reference_follow(l, m->setpoint, 0.0, m->setpoint);
     takt_average_start(&m->mover.average, m->path->limits.profile, l->cycles, l->at, 0);
     m->lag = 0.0;
 }
@@ -88,13 +81,14 @@ static bool has_memory(struct motion *m)
 /* Takes over as soon as it can. */
 static void begin_hold(struct motion *m)
 {
+    const uint64_t start = path_start(m->path, m->path->first);
+    const double at = (double)(int64_t)(m->reference.at - start) - m->lag;
     const double way[] = {m->feed_before[0] * PATH_UNITS_PER_MM,
                           m->feed_before[1] * PATH_UNITS_PER_MM};
 
     TAKT_ASSERT(!m->holds);
     m->looks = may_hold(m) && has_memory(m);
-    m->holds = m->looks &&
-               takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, setpoint_at(m), way);
+    m->holds = m->looks && takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, at, way);
     m->reference.run.active = m->reference.run.active && !m->holds;
 }
 

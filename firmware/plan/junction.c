@@ -323,24 +323,25 @@ static bool may_keep(const struct block *b, double v, double top, const struct p
     return b->length_mm <= v * (0.5 * window_s + ramp_s(top - v, a, j));
 }
 
-/* The blocks beside a junction of feed v: one that loses nothing by it goes along at v. */
+/*
+ * The feed V that the blocks beside a junction of feed v allow: v, if one of them loses nothing by
+ * it, the shorter one first.
+ */
 static double meet_at(struct block *before, struct block *after, double v,
                       const struct plan_limits *limits)
 {
-    struct block *shorter = after->length_mm < before->length_mm ? after : before;
-    struct block *other = shorter == before ? after : before;
     const double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
+    struct block *beside[] = {before, after};
 
-    if (v >= top) {
-        return top;
+    if (after->length_mm < before->length_mm) {
+        beside[0] = after;
+        beside[1] = before;
     }
-    if (may_keep(shorter, v, top, limits)) {
-        takt_block_cap_feed(shorter, v, GOVERNOR_SHORT);
-        return v;
-    }
-    if (may_keep(other, v, top, limits)) {
-        takt_block_cap_feed(other, v, GOVERNOR_SHORT);
-        return v;
+    for (unsigned i = 0; i < 2 && v < top; i++) {
+        if (may_keep(beside[i], v, top, limits)) {
+            takt_block_cap_feed(beside[i], v, GOVERNOR_SHORT);
+            return v;
+        }
     }
     return top;
 }

@@ -249,6 +249,7 @@ def on_long_cycles_the_path_is_timed_with_its_chords():
     """It was thought to be quicker than it is; and on short arcs within a tolerance stopped at each."""
     for name, program, (a, j), part in (
         ("lines that merge to some with larger corners", lines(bends_slowly(), 0.254), (5056, 1.065e6), 0.97),
+        ("lines that are gone along in less than some cycles", lines(bends_slowly(), 0.05), (5056, 1.065e6), 0.97),
         ("arcs gone along in less than some cycles", short_arcs_inwards(0.0048), (3289, 2.54e6), 1.01),
     ):
         machine = hunt_programs.Machine({axis: (100.0, a, j) for axis in "XYZ"}, 4000)
