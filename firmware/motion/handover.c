@@ -1,20 +1,12 @@
 #include "motion/handover.h"
 
-void takt_handover_allow(struct motion *m)
-{
-    m->hands_over = true;
-}
+#include "base/assert.h"
 
-void takt_handover_allow_all(struct motion *m)
+void takt_handover_allow(struct motion *m, enum motion_handover which)
 {
-    m->hands_over_all = true;
-}
-
-void takt_handover_allow_linear(struct motion *m)
-{
-    m->hands_over_all = true;
-    m->keeps_rotary = true;
-    m->path->divides_rotary = true;
+    TAKT_ASSERT(which != MOTION_HANDS_OVER_LINEAR || m->path->pushed == 0);
+    m->hands_over = which;
+    m->path->divides_rotary = which == MOTION_HANDS_OVER_LINEAR;
 }
 
 void takt_handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s,

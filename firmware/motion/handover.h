@@ -9,20 +9,8 @@
 
 #include <stdbool.h>
 
-/*
- * From now on motion hands over blocks that follow the spindle; else it runs them at the commanded
- * speed.
- */
-void takt_handover_allow(struct motion *m);
-
-/* The same of all blocks but probing moves. */
-void takt_handover_allow_all(struct motion *m);
-
-/*
- * The same, but blocks in which rotary axes move stay motion's. Before anything is pushed onto its
- * path.
- */
-void takt_handover_allow_linear(struct motion *m);
+/* From now on motion hands over these; linear: before anything is pushed onto its path. */
+void takt_handover_allow(struct motion *m, enum motion_handover which);
 
 /*
  * A cycle was made in the path's oldest block. feed: of the setpoint, as it is programmed. Fills

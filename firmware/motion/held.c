@@ -18,12 +18,12 @@ void takt_held_end(struct motion *m)
     const uint64_t at = takt_hold_start(&m->mover.beside.hold, m->path) +
                         (uint64_t)(hold_at(&m->mover.beside.hold) + 0.5);
 
-    TAKT_ASSERT(m->holds);
+    TAKT_ASSERT(m->held == MOTION_HELD);
     takt_reference_follow(l, at + step * ((uint64_t)l->window - 1) / 2,
                           (double)step / PATH_UNITS_PER_MM, m->setpoint);
     takt_average_start(&m->mover.average, m->path->limits.profile, l->cycles, l->at, step);
     m->lag = average_lag(&m->mover.average);
-    m->holds = false;
+    m->held = MOTION_NOT_HELD;
 }
 
 /*
@@ -74,7 +74,7 @@ static bool has_memory(struct motion *m)
     if (used >= MOTION_STORE_MAX) {
         return false;
     }
-    return (m->looks && beside->hold.store == store) ||
+    return (m->held == MOTION_LOOKS && beside->hold.store == store) ||
            takt_hold_prepare(&beside->hold, &m->path->limits, store, MOTION_STORE_MAX - used);
 }
 
@@ -86,29 +86,32 @@ static void begin_hold(struct motion *m)
     const double way[] = {m->feed_before[0] * PATH_UNITS_PER_MM,
                           m->feed_before[1] * PATH_UNITS_PER_MM};
 
-    TAKT_ASSERT(!m->holds);
-    m->looks = may_hold(m) && has_memory(m);
-    m->holds = m->looks && takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, at, way);
-    m->reference.run.active = m->reference.run.active && !m->holds;
+    TAKT_ASSERT(m->held != MOTION_HELD);
+    m->held = may_hold(m) && has_memory(m) ? MOTION_LOOKS : MOTION_NOT_HELD;
+    if (m->held == MOTION_LOOKS &&
+        takt_hold_begin(&m->mover.beside.hold, m->path, &m->reference, at, way)) {
+        m->held = MOTION_HELD;
+    }
 }
 
 /* The setpoint is moved by the hold, or stands; or the trapezoidal reference goes on. */
 bool takt_held_move(struct motion *m, bool hold)
 {
-    m->looks = m->looks && hold;
-    if (!m->holds && !hold) {
+    if (m->held != MOTION_HELD && !hold) {
+        m->held = MOTION_NOT_HELD;
         return false;
     }
-    if (!m->holds) {
+    if (m->held != MOTION_HELD) {
         begin_hold(m);
     } else if (!takt_hold_step(&m->mover.beside.hold, m->path, &m->reference, hold)) {
         takt_held_end(m);
+        m->held = hold ? MOTION_LOOKS : MOTION_NOT_HELD;
     }
-    if (m->holds) {
+    if (m->held == MOTION_HELD) {
         follow_hold(m);
         return true;
     }
-    if (m->looks && takt_hold_stands(m->path)) {
+    if (m->held == MOTION_LOOKS && takt_hold_stands(m->path)) {
         stand(m);
         return true;
     }

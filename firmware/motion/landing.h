@@ -25,9 +25,14 @@ struct landing_case {
     double window;       /* cycles */
 };
 
+enum landing_phase {
+    LANDING_NONE,
+    LANDING_ACTIVE,
+    LANDING_OVER /* its last cycle has been made: the setpoint is on the junction */
+};
+
 struct landing_run {
-    bool active;
-    bool over;         /* its last cycle has been made: the setpoint is on the junction */
+    enum landing_phase phase;
     uint64_t junction; /* path position */
     uint32_t cycle;    /* passed */
     uint32_t ramp;     /* n */

@@ -73,9 +73,12 @@ static bool turns_rotary(const struct block *b)
 
 static bool is_handed_over(const struct motion *m, const struct block *b)
 {
-    return (m->hands_over && move_is_synchronized(&b->move)) ||
-           (m->hands_over_all && b->move.kind != MOVE_PROBE &&
-            !(m->keeps_rotary && turns_rotary(b)));
+    if (move_is_synchronized(&b->move)) {
+        return m->hands_over != MOTION_HANDS_OVER_NONE;
+    }
+    return b->move.kind != MOVE_PROBE &&
+           (m->hands_over == MOTION_HANDS_OVER_ALL ||
+            (m->hands_over == MOTION_HANDS_OVER_LINEAR && !turns_rotary(b)));
 }
 
 /*
@@ -334,7 +337,7 @@ static bool end_path(struct motion *m)
     if (m->watch.line != 0) {
         return m->feed != 0.0;
     }
-    if (m->holds) {
+    if (m->held == MOTION_HELD) {
         takt_held_end(m);
     }
     takt_path_restart(m->path, &m->at, m->reference.at);

@@ -37,6 +37,21 @@ enum motion_result {
     MOTION_HANDED_OVER
 };
 
+/* Blocks whose setpoints somebody else makes (handover.h): each level has all before it. */
+enum motion_handover {
+    MOTION_HANDS_OVER_NONE,         /* those that follow the spindle go at its commanded speed */
+    MOTION_HANDS_OVER_SYNCHRONIZED, /* those that follow the spindle */
+    MOTION_HANDS_OVER_LINEAR,       /* those in which no rotary axis moves, but probing moves */
+    MOTION_HANDS_OVER_ALL           /* all but probing moves */
+};
+
+/* What moves the setpoint in a hold. */
+enum motion_held {
+    MOTION_NOT_HELD, /* the trapezoidal reference */
+    MOTION_LOOKS,    /* likewise, and the hold looks whether it can */
+    MOTION_HELD      /* the hold */
+};
+
 /* What the operator wants, in this cycle. */
 struct motion_operator {
     double feed_ratio;  /* of programmed feeds, 0 ... BLOCK_OVERRIDE_MAX; 0 holds */
@@ -75,8 +90,7 @@ struct motion {
     double feed_before[2]; /* likewise, in the two cycles before */
     double lag;            /* of the setpoint behind the trapezoidal reference, path units */
     bool proportional;
-    bool holds;        /* the setpoint is moved by the hold, not by the trapezoidal reference, */
-    bool looks;        /* or looks whether it can be */
+    enum motion_held held;
     bool done;         /* the oldest block: the next cycle passes it */
     bool changes_tool; /* this cycle stands at a tool change that is not passed */
     /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
@@ -107,10 +121,8 @@ struct motion {
     uint32_t restarts; /* of the path, so that no ceiling of an old one is taken */
     uint32_t asked_restarts;
     uint32_t built_restarts;
-    bool ending;         /* comes to rest where it is, and the rest of the path is dropped */
-    bool hands_over;     /* blocks that follow the spindle are executed by others: handover.h */
-    bool hands_over_all; /* and so are all others but probing moves */
-    bool keeps_rotary;   /* but motions of rotary axes */
+    enum motion_handover hands_over;
+    bool ending; /* comes to rest where it is, and the rest of the path is dropped */
     struct watch watch;
 };
 

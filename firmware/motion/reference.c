@@ -14,12 +14,13 @@ void takt_reference_init(struct reference *l, enum ramp_profile profile, uint64_
     l->span = at - 1;
     l->known = at;
     l->halt.left = at;
+    takt_reference_end_blocks(l, false);
     l->standing = true;
 }
 
 void takt_reference_stand(struct reference *l, uint64_t at)
 {
-    TAKT_ASSERT(!l->run.active);
+    TAKT_ASSERT(l->run.phase != LANDING_ACTIVE);
     l->at = at;
     l->feed = 0.0;
     l->standing = true;
@@ -111,8 +112,7 @@ static void run_landing(struct reference *l)
     l->at = run->start + path_units(takt_landing_distance(run, run->cycle, &feed));
     count_changes(l, run->cycle <= run->ramp ? -1.0 : 0.0);
     l->feed = feed;
-    run->active = run->cycle < run->total;
-    run->over = !run->active;
+    run->phase = run->cycle < run->total ? LANDING_ACTIVE : LANDING_OVER;
 }
 
 static void slow_down(struct reference *l, const struct reference_brake *b)
@@ -142,7 +142,7 @@ static void run_on(struct reference *l, uint64_t setpoint, bool hold)
     } else {
         reference_approach_landing(l, hold, &b);
     }
-    if (l->run.active) {
+    if (l->run.phase == LANDING_ACTIVE) {
         run_landing(l);
         return;
     }
@@ -183,7 +183,7 @@ static void enter_span(struct reference *l, uint32_t k, uint64_t from,
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = REFERENCE_LONG_AGO;
     l->since_minus = REFERENCE_LONG_AGO;
-    l->run.over = false;
+    l->run.phase = LANDING_NONE;
     l->abrupt = false;
     start->at = l->at;
     takt_reference_enter_piece(l, k);
@@ -213,8 +213,9 @@ static bool leave_stop(struct reference *l, struct reference_start *start)
  */
 static bool is_at_junction(const struct reference *l, uint64_t junction)
 {
-    return l->run.over ? l->run.junction == junction
-                       : l->at == junction && l->feed == 0.0 && reference_has_rested(l);
+    return l->run.phase == LANDING_OVER
+               ? l->run.junction == junction
+               : l->at == junction && l->feed == 0.0 && reference_has_rested(l);
 }
 
 /* Goes over from a landed junction to the span behind it. False: that is not known yet. */
@@ -232,7 +233,8 @@ static bool leave_junction(struct reference *l, struct reference_start *start)
 
 static bool has_stopped(const struct reference *l)
 {
-    return l->feed == 0.0 && reference_has_piece(l) && reference_piece(l, l->here.piece)->stop &&
+    return l->feed == 0.0 && reference_has_piece(l) &&
+           reference_piece(l, l->here.piece)->end == CEILING_STOPS &&
            reference_is_beyond(l->at, reference_leave_of(l, l->here.piece));
 }
 
@@ -242,7 +244,7 @@ static bool begin_span(struct reference *l, bool hold, struct reference_start *s
     if (l->standing) {
         return l->released && !hold && leave_stop(l, start);
     }
-    return (l->run.over || !(hold || l->halt.found)) && leave_junction(l, start);
+    return (l->run.phase == LANDING_OVER || !(hold || l->halt.found)) && leave_junction(l, start);
 }
 
 bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
@@ -259,7 +261,7 @@ bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
     const bool too_fast = l->halt.on && takt_reference_seek_halt(l);
 
     follow_landing(l);
-    if (l->run.active) {
+    if (l->run.phase == LANDING_ACTIVE) {
         run_landing(l);
     } else if (reference_has_piece(l)) {
         run_on(l, setpoint, hold || too_fast);

@@ -55,10 +55,9 @@ struct reference_place {
 /* Where the trapezoidal reference halts: at the end of a motion in its span, or nowhere. */
 struct reference_halt {
     bool on;        /* at the end of every motion that it can come to rest in */
-    bool begun;     /* the next end has been looked for, */
-    bool found;     /* and it comes to rest there, and stays */
+    bool found;     /* it comes to rest there, and stays */
     uint32_t block; /* the path's: those before it, in its span, end no motion ahead */
-    uint64_t span;  /* where that span starts, */
+    uint64_t span;  /* where that span starts; another one than that it is in: none is known, */
     uint64_t end;   /* and that block ends */
     uint64_t left;  /* the last end that has been left again */
     double a;       /* mm/cycle2: the lowest of the blocks of the motion up to there */

@@ -135,7 +135,7 @@ static uint64_t rest_position(const struct reference *l, uint32_t k)
     const bool same = maths_abs((double)(int64_t)(end - leave)) <= END_UNITS;
 
     TAKT_ASSERT(k < l->here.ceiling->count);
-    return reference_piece(l, k)->stop || same ? leave : end;
+    return reference_piece(l, k)->end == CEILING_STOPS || same ? leave : end;
 }
 
 /* Brakes for what piece k ends in. */
@@ -213,7 +213,7 @@ void takt_reference_brake_ahead(const struct reference *l, double low, struct re
         const double gap_mm = reference_end_mm(l, k) - s;
 
         b->pieces = k - l->here.piece + 1;
-        if (!l->here.late || p->stop) {
+        if (!l->here.late || p->end == CEILING_STOPS) {
             brake_for_piece(l, k, gap_mm, b);
         }
         if (reference_is_last_of_span(p) || gap_mm >= l->feed || k + 1 == l->here.ceiling->count ||
@@ -410,9 +410,9 @@ void takt_reference_consider_landing(struct reference *l, bool hold, struct refe
     }
     l->run = (struct landing_run){.start = l->at, .junction = l->junction};
     if (!hold || !can_rest_before(l, gap_mm)) {
-        l->run.active = must_land(l, b, gap_mm, &l->run);
+        l->run.phase = must_land(l, b, gap_mm, &l->run) ? LANDING_ACTIVE : LANDING_NONE;
     }
-    if (!l->run.active && (hold || (must_stop(l) && is_way_free(l, false)))) {
+    if (l->run.phase != LANDING_ACTIVE && (hold || (must_stop(l) && is_way_free(l, false)))) {
         brake_to_rest(l, l->junction, stop_acceleration(l), b);
     }
 }

@@ -116,7 +116,7 @@ double takt_reference_halt_acceleration(const struct reference *l)
 {
     const double gap = path_mm(l->at, l->halt.end) - l->feed * waiting(l);
 
-    TAKT_ASSERT(l->halt.begun || l->halt.found); /* an end that binds is kept when switched off */
+    TAKT_ASSERT(l->halt.span == l->span || l->halt.found); /* one that binds is kept when off */
     return is_bound(l) ? maths_min(free_acceleration(l), 0.5 * reference_square(l->feed) / gap)
                        : junction_acceleration(l);
 }
@@ -131,7 +131,7 @@ static bool can_rest(const struct reference *l)
 void takt_reference_end_blocks(struct reference *l, bool on)
 {
     l->halt.on = on;
-    l->halt.begun = l->halt.begun && on;
+    l->halt.span = l->span - 1; /* the next end is looked for anew */
     l->halt.found = l->halt.found && (on || is_bound(l));
 }
 
@@ -152,7 +152,6 @@ static void begin(struct reference *l, const struct path *path)
 {
     const bool before = reference_is_beyond(l->span, path_end(path, path->first));
 
-    l->halt.begun = true;
     l->halt.span = l->span;
     look_at(l, path, before ? path->first + 1 : path->first, true);
 }
@@ -179,7 +178,7 @@ static bool find_end(struct reference *l, const struct ceiling *c)
     const bool passed = (int32_t)(l->halt.block - c->path->first) < 0;
 
     TAKT_ASSERT(c->count > 0); /* it is in a span */
-    if (!l->halt.begun || passed || l->halt.span != l->span) {
+    if (passed || l->halt.span != l->span) {
         begin(l, c->path);
     }
     for (unsigned i = 0; i < BLOCKS_MAX && !is_end_ahead(l, c->path); i++) {
@@ -198,7 +197,7 @@ bool takt_reference_seek_halt(struct reference *l)
     const uint64_t end = h->end;
 
     h->found = false;
-    if (l->run.active || !find_end(l, l->here.ceiling)) {
+    if (l->run.phase == LANDING_ACTIVE || !find_end(l, l->here.ceiling)) {
         return false;
     }
     h->found = found && h->end == end;

@@ -386,15 +386,15 @@ static void find_piece(struct reference_place *p, double x, uint64_t setpoint)
 void takt_reference_follow(struct reference *l, uint64_t at, double feed, uint64_t setpoint)
 {
     struct reference_place *p = &l->here;
-    const struct ceiling *c = p->ceiling;
 
     l->at = at;
     l->feed = feed;
     l->owed_mm = 0.0;
     l->abrupt = false;
+    l->run.phase = l->run.phase == LANDING_ACTIVE ? LANDING_NONE : l->run.phase;
     l->since_plus = l->since_minus = (uint32_t)l->window - 1;
-    find_piece(p, path_mm(c->origin, at), setpoint);
-    const uint64_t start = takt_ceiling_start(c, p->piece);
+    find_piece(p, path_mm(p->ceiling->origin, at), setpoint);
+    const uint64_t start = takt_ceiling_start(p->ceiling, p->piece);
 
     p->late = false;
     l->entered = reference_is_beyond(start, l->entered) ? start : l->entered;

@@ -87,7 +87,7 @@ static inline bool reference_is_beyond(uint64_t position, uint64_t other)
 
 static inline bool reference_is_last_of_span(const struct ceiling_piece *p)
 {
-    return p->stop || p->landed;
+    return p->end != CEILING_GOES_ON;
 }
 
 /*
@@ -136,7 +136,7 @@ double takt_reference_low_feed(struct reference *l, uint64_t setpoint);
  */
 void takt_reference_brake_ahead(const struct reference *l, double low, struct reference_brake *b);
 /*
- * reference_feed.c: begins to land (run.active) when it is time to, or makes the junction a stop
+ * reference_feed.c: begins to land (run.phase) when it is time to, or makes the junction a stop
  * where it cannot be done.
  */
 void takt_reference_consider_landing(struct reference *l, bool hold, struct reference_brake *b);

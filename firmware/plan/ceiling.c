@@ -314,7 +314,7 @@ static bool continues(const struct builder *s, const struct path_block *b, float
     }
     const struct ceiling_piece *last = &s->c->piece[s->c->count - 1];
 
-    return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
+    return last->end == CEILING_GOES_ON && last->feed_mm_s == feed_mm_s &&
            (double)last->acceleration == a &&
            (double)takt_ceiling_top_feed(s->c, s->c->count - 1) <= takt_path_block_top(b) &&
            takt_ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
@@ -387,7 +387,7 @@ static void lay_landed_junction(struct builder *s, uint32_t index)
         append(s, end_mm, takt_maths_float_below(feed / s->cycle_s), a, index + 1);
 
     p->opens = true;
-    p->landed = true;
+    p->end = CEILING_LANDS;
 }
 
 /*
@@ -417,7 +417,7 @@ static void lay_blocks(struct builder *s)
 
         fresh = stops || takt_span_lands(s->path, i);
         if (stops) {
-            s->c->piece[s->c->count - 1].stop = true;
+            s->c->piece[s->c->count - 1].end = CEILING_STOPS;
         } else if (fresh) {
             lay_landed_junction(s, i);
         }
@@ -454,9 +454,9 @@ float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k)
 {
     const struct ceiling_piece *p = &c->piece[k];
 
-    return p->landed ? p->feed_mm_s
-                     : takt_maths_float_below(
-                           takt_path_block_top(path_at(c->path, path_of_ceiling(c, p->start))));
+    return p->end == CEILING_LANDS ? p->feed_mm_s
+                                   : takt_maths_float_below(takt_path_block_top(
+                                         path_at(c->path, path_of_ceiling(c, p->start))));
 }
 
 unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k)

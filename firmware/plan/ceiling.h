@@ -45,6 +45,13 @@
 #define CEILING_RAPID   4U
 #define CEILING_SPINDLE 8U
 
+/* What a piece ends with. */
+enum ceiling_end {
+    CEILING_GOES_ON, /* another one of its span */
+    CEILING_STOPS,   /* the span, where the setpoint leaves the piece */
+    CEILING_LANDS    /* likewise, and a setpoint falls there in motion */
+};
+
 /*
  * Small, since two ceilings of all pieces are kept: limits are of single precision, not above the
  * exact ones, and what can be met is kept as a feed, not as its square. Feeds are mm/s here, so
@@ -62,8 +69,7 @@ struct ceiling_piece {
     unsigned
         landing : 9;    /* first landed junction in or after it; CEILING_NONE: a stop comes first */
     unsigned opens : 1; /* what was not there before begins: a block, or the way to the junction */
-    unsigned stop : 1;  /* the span ends with this piece, where it is left */
-    unsigned landed : 1;     /* likewise, and a setpoint falls there in motion */
+    unsigned end : 2;   /* enum ceiling_end */
     unsigned lowest : 1;     /* no end_feed is lower from here to the last but one before landing */
     unsigned lowest_max : 1; /* likewise end_feed_max */
 };

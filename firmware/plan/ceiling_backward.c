@@ -106,13 +106,13 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile,
                        float *max_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];
-    const float end_mm_s = p->stop ? 0.0F : *feed_mm_s;
-    const float end_max_mm_s = p->stop ? 0.0F : *max_mm_s;
+    const float end_mm_s = p->end == CEILING_STOPS ? 0.0F : *feed_mm_s;
+    const float end_max_mm_s = p->end == CEILING_STOPS ? 0.0F : *max_mm_s;
     float top_mm_s = takt_ceiling_top_feed(c, k);
 
     p->end_feed_mm_s = end_mm_s;
     p->end_feed_max_mm_s = end_max_mm_s;
-    if (p->landed) {
+    if (p->end == CEILING_LANDS) {
         top_mm_s = landed_feed(c, k, profile, true);
         p->feed_mm_s = landed_feed(c, k, profile, false);
         p->end_feed_max_mm_s = top_mm_s;
@@ -154,8 +154,9 @@ void takt_ceiling_plan_backward(struct ceiling *c, enum ramp_profile profile)
     for (uint32_t k = c->count; k-- > 0;) {
         struct ceiling_piece *p = &c->piece[k];
 
-        landing = p->stop ? CEILING_NONE : p->landed ? k : landing;
-        open = open && !p->stop && (!p->landed || k + 1 == c->count);
+        landing = p->end == CEILING_STOPS ? CEILING_NONE : p->end == CEILING_LANDS ? k : landing;
+        open =
+            open && (p->end == CEILING_GOES_ON || (p->end == CEILING_LANDS && k + 1 == c->count));
         c->open_from = open ? k : c->open_from;
         p->landing = landing & CEILING_NONE;
         plan_piece(c, k, profile, &feed_mm_s, &max_mm_s);

@@ -241,11 +241,11 @@ static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
     } else {
         close_newest(p);
     }
-    if (piece->last) {
+    if (piece->end == SMOOTH_ENDS) {
         b->curve.end = piece->move->end;
     }
     append(p, b, piece->control);
-    p->smoothing = !piece->last && !piece->stop;
+    p->smoothing = piece->end == SMOOTH_GOES_ON;
     if (!p->smoothing) {
         close_newest(p);
     }

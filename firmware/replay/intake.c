@@ -36,8 +36,8 @@ static bool read_header(struct intake *s)
     }
     s->fault = takt_replay_header_read(&s->header, s->bytes);
     s->length = 0;
-    s->has_header = s->fault == REPLAY_GOOD;
-    return s->has_header;
+    s->next = s->fault == REPLAY_GOOD ? INTAKE_RECORD : INTAKE_HEADER;
+    return s->next == INTAKE_RECORD;
 }
 
 static void take_section(struct intake *s, const uint8_t *bytes, size_t length)
@@ -189,7 +189,7 @@ static void take_record(struct intake *s, size_t length)
         take_more(s, bytes, length);
         break;
     case REPLAY_END:
-        s->ended = true;
+        s->next = INTAKE_NOTHING;
         if (s->intervals != s->header.intervals) {
             damaged(s);
         }
@@ -240,9 +240,9 @@ static bool read_record(struct intake *s)
 
 void takt_intake_read(struct intake *s)
 {
-    if (s->fault != REPLAY_GOOD || (!s->has_header && !read_header(s))) {
+    if (s->fault != REPLAY_GOOD || (s->next == INTAKE_HEADER && !read_header(s))) {
         return;
     }
-    while (!s->ended && read_record(s)) {
+    while (s->next == INTAKE_RECORD && read_record(s)) {
     }
 }

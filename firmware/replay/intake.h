@@ -37,11 +37,13 @@ struct intake_section {
     int64_t start[AXIS_LINEAR_COUNT]; /* quanta */
 };
 
+/* What comes next. */
+enum intake_next { INTAKE_HEADER, INTAKE_RECORD, INTAKE_NOTHING };
+
 struct intake {
     struct replay_source source;
     struct replay_header header;
-    bool has_header;
-    bool ended;              /* the end of the program has come */
+    enum intake_next next;
     enum replay_fault fault; /* nothing more is read */
     uint32_t crc;
     uint64_t intervals; /* of all sections that came */

@@ -47,7 +47,7 @@ static void begin_intake(struct replay *r, const struct plan_limits *limits)
 void takt_replay_read(struct replay *r, const struct plan_limits *limits)
 {
     takt_intake_read(r->intake);
-    if (r->intake->has_header && r->step == 0.0) {
+    if (r->intake->next != INTAKE_HEADER && r->step == 0.0) {
         begin_intake(r, limits);
     }
     if (r->intake->fault != REPLAY_GOOD || (r->intake->source.is_lost != NULL &&
@@ -150,7 +150,6 @@ static void begin_section(struct replay *r, const struct motion *m)
         memcpy(r->control[k], r->section.start, sizeof(r->control[k]));
     }
     r->begun = true;
-    r->has_begun = true;
     r->interval = 0;
     r->taken = 0;
     r->part = 0.0;
@@ -471,7 +470,7 @@ enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
     r->waits = false;
     if (!r->begun) {
         if (wanted->wait || rate == 0.0 || !has_begin(r) || !takt_motion_rests(m)) {
-            r->waits = r->has_begun && rate > 0.0 && !has_begin(r);
+            r->waits = r->intake->sections_taken > 0 && rate > 0.0 && !has_begin(r);
             r->starved += r->waits ? 1 : 0;
             stand(m, record);
             return REPLAY_CYCLE;

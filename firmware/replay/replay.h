@@ -51,7 +51,6 @@ struct replay {
         brake_intervals; /* fewer than these and not the section's end: no more must be driven */
     double highest;   /* rate: from there it can be braked within what the rings hold of a stream */
     uint64_t starved; /* cycles in which that slowed the axes down */
-    bool has_begun;   /* a section has been begun at all */
     bool waits;       /* the axes stand because the stream is late; they go on by themselves */
     struct diagnostic alarm; /* TAKT_OK: none */
 };

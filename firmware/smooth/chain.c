@@ -115,7 +115,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->exact = false;
     s->since = (struct worth_since){.element = 0};
     s->starts = true;
-    s->stands = false;
+    s->standing = SMOOTH_STANDS_NOT;
     takt_order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->merge.open = false;

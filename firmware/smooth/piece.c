@@ -76,19 +76,19 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by = (double)takt_verifier_change_on(&need, &s->route, &s->change, &rate);
     piece->change.rounded = piece->change.by / s->change.rounding_s;
-    piece->stop = s->stops && s->taken + 1 == s->ready;
-    piece->last = s->finished && w->at_end && i + 4 == w->count;
+    piece->end = s->finished && w->at_end && i + 4 == w->count ? SMOOTH_ENDS
+                 : s->stops && s->taken + 1 == s->ready        ? SMOOTH_STOPS
+                                                               : SMOOTH_GOES_ON;
 }
 
 void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                       bool leaves)
+                       enum smooth_standing where)
 {
-    TAKT_ASSERT(!s->stands);
+    TAKT_ASSERT(s->standing == SMOOTH_STANDS_NOT && where != SMOOTH_STANDS_NOT);
     s->stand_rotary = of->rotary;
     s->stand_number = of->number;
     s->stand_at = *at;
-    s->stands = true;
-    s->leaves = leaves;
+    s->standing = where;
 }
 
 void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
@@ -96,8 +96,7 @@ void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
     const double change_per_s = 1.0 / s->limits.cycle_s;
     const struct point at = s->stand_at;
 
-    TAKT_ASSERT(s->stands);
-    s->stands = false;
+    TAKT_ASSERT(s->standing != SMOOTH_STANDS_NOT);
     *piece = (struct smooth_piece){
         .move = &s->move,
         .number = s->stand_number,
@@ -106,9 +105,10 @@ void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
         .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
         .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
         .rotary = s->stand_rotary,
-        .last = !s->leaves,
+        .end = s->standing == SMOOTH_STANDS_BEHIND ? SMOOTH_ENDS : SMOOTH_GOES_ON,
     };
-    if (piece->last) {
+    s->standing = SMOOTH_STANDS_NOT;
+    if (piece->end == SMOOTH_ENDS) {
         takt_smooth_end(s);
     }
 }

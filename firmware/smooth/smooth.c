@@ -161,14 +161,14 @@ static void take_piece(struct smooth *s, struct smooth_piece *piece)
     takt_smooth_set_piece(s, piece);
     if (s->starts) {
         s->starts = false;
-        takt_smooth_stand(s, piece, &piece->control[0], true);
+        takt_smooth_stand(s, piece, &piece->control[0], SMOOTH_STANDS_BEFORE);
         takt_smooth_take_standing(s, piece);
         return;
     }
     s->taken++;
-    if (piece->last) {
-        takt_smooth_stand(s, piece, &piece->control[3], false);
-        piece->last = false;
+    if (piece->end == SMOOTH_ENDS) {
+        takt_smooth_stand(s, piece, &piece->control[3], SMOOTH_STANDS_BEHIND);
+        piece->end = SMOOTH_GOES_ON;
     }
 }
 
@@ -182,7 +182,7 @@ enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scrat
                                    struct smooth_piece *piece, struct curve *curve)
 {
     while (s->open) {
-        if (s->stands) {
+        if (s->standing != SMOOTH_STANDS_NOT) {
             takt_smooth_take_standing(s, piece);
             return SMOOTH_PIECE;
         }

@@ -33,6 +33,13 @@ struct smooth_change {
     double rounded;
 };
 
+/* What a piece ends with. */
+enum smooth_end {
+    SMOOTH_GOES_ON, /* the next one of the curve */
+    SMOOTH_STOPS,   /* rest, though the chain goes on: no way on was found */
+    SMOOTH_ENDS     /* the chain: rest, in the end of the last motion */
+};
+
 /*
  * A piece of curve: x(f) = sum of b_k(f) control[k], f = 0 ... 1 in interval_s of nominal time
  * (window.h).
@@ -44,12 +51,11 @@ struct smooth_piece {
     double interval_s;
     struct smooth_rate rate;
     struct smooth_change
-        change;     /* rounded over the same time in all pieces in which the axes move */
-    bool stop;      /* comes to rest at its end, though the chain goes on: no way on was found */
+        change; /* rounded over the same time in all pieces in which the axes move */
+    enum smooth_end end;
     bool rotary;    /* no linear axis moves in that motion */
     bool starts;    /* begins at rest */
     bool continues; /* more of the motion that is told follows */
-    bool last;      /* of the chain: ends at rest, in the end of the last motion */
 };
 
 /* What has been taken. */
@@ -66,6 +72,13 @@ union smooth_scratch {
     struct relax relax;
     struct timing timing;
     struct worth_pace pace;
+};
+
+/* Is a piece still to come, in which the axes stand? */
+enum smooth_standing {
+    SMOOTH_STANDS_NOT,
+    SMOOTH_STANDS_BEFORE, /* the chain goes on after it */
+    SMOOTH_STANDS_BEHIND  /* it ends the chain */
 };
 
 struct smooth {
@@ -86,9 +99,8 @@ struct smooth {
     double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
     bool exact;       /* it is */
     struct worth_since since;
-    bool stands;       /* a piece is still to come, in which the axes stand */
+    enum smooth_standing standing;
     bool starts;       /* the next piece begins at rest */
-    bool leaves;       /* after that the chain goes on; else it ends it, or a part of it */
     bool stand_rotary; /* of the piece before or behind it, */
     uint32_t stand_number;
     struct point stand_at; /* and where the axes stand */

@@ -41,14 +41,13 @@ void takt_angle_follow(struct angle *a, double measured_rev)
     const struct angle_ahead expected = takt_angle_look_ahead(a, 1.0);
     const double off = measured_rev - expected.rev;
 
-    if (!a->begun) {
-        a->begun = true;
+    if (a->state == ANGLE_UNKNOWN) {
         a->rev = measured_rev;
-        a->stands = true;
+        a->state = ANGLE_STANDS;
         return;
     }
     a->rev = expected.rev + a->gain_angle * off;
     a->speed = expected.speed + a->gain_speed * off;
     a->acceleration = expected.acceleration + a->gain_acceleration * off;
-    a->stands = a->speed == 0.0 && a->acceleration == 0.0;
+    a->state = a->speed == 0.0 && a->acceleration == 0.0 ? ANGLE_STANDS : ANGLE_TURNS;
 }

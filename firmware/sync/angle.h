@@ -13,10 +13,15 @@
 #define ANGLE_BANDWIDTH_RAD_S     200.0
 #define ANGLE_BANDWIDTH_RAD_CYCLE 0.2
 
+enum angle_state {
+    ANGLE_UNKNOWN, /* nothing has been measured yet */
+    ANGLE_STANDS,  /* speed and acceleration are 0 */
+    ANGLE_TURNS
+};
+
 struct angle {
     double gain_angle, gain_speed, gain_acceleration;
-    bool begun;
-    bool stands; /* speed and acceleration are 0 */
+    enum angle_state state;
     double rev;
     double speed;        /* rev/cycle */
     double acceleration; /* rev/cycle2 */
@@ -39,7 +44,7 @@ void takt_angle_tune(struct angle *a, double bandwidth_rad_cycle);
 void takt_angle_follow(struct angle *a, double measured_rev);
 static inline void angle_measure(struct angle *a, double measured_rev)
 {
-    if (!a->stands || measured_rev != a->rev) {
+    if (a->state != ANGLE_STANDS || measured_rev != a->rev) {
         takt_angle_follow(a, measured_rev);
     }
 }

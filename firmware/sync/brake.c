@@ -116,7 +116,7 @@ void takt_brake_begin_at(struct brake *b, const struct brake_state *s,
     b->end_mm = end_mm;
 }
 
-bool takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s)
+void takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s)
 {
     double left_s = b->passed_s + cycle_s;
 
@@ -127,10 +127,6 @@ bool takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s)
         b->phase++;
     }
     b->passed_s = left_s;
-    if (b->phase == BRAKE_PHASES) {
-        *s = (struct brake_state){.x_mm = b->end_mm};
-        return true;
-    }
-    *s = takt_brake_advance(&b->from, b->jerk_mm_s3[b->phase], left_s);
-    return false;
+    *s = brake_is_over(b) ? (struct brake_state){.x_mm = b->end_mm}
+                          : takt_brake_advance(&b->from, b->jerk_mm_s3[b->phase], left_s);
 }

@@ -54,7 +54,13 @@ void takt_brake_begin_at(struct brake *b, const struct brake_state *s,
                          const struct brake_limits *limits, double jerk_mm_s3, double time_s,
                          double end_mm);
 
-/* The next cycle. True: it is at rest now. */
-bool takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s);
+/* The next cycle. */
+void takt_brake_step(struct brake *b, double cycle_s, struct brake_state *s);
+
+/* Has it come to rest? */
+static inline bool brake_is_over(const struct brake *b)
+{
+    return b->phase == BRAKE_PHASES;
+}
 
 #endif

@@ -53,7 +53,6 @@ void takt_follower_start(struct follower *f, const struct brake_limits *limits)
     memset(&f->at, 0, sizeof(f->at));
     f->limits = *limits;
     f->braking = false;
-    f->rests = false;
 }
 
 static double clamp(double value, double most)
@@ -112,7 +111,7 @@ static void step_brake(struct follower *f)
 {
     struct brake_state s;
 
-    f->rests = takt_brake_step(&f->brake, f->cycle_s, &s);
+    takt_brake_step(&f->brake, f->cycle_s, &s);
     f->at = mirrored(&s, f->sense);
 }
 

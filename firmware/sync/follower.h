@@ -31,7 +31,6 @@ struct follower {
     struct brake_limits limits;
     struct brake_state at; /* at the end of the last cycle */
     bool braking;          /* comes to rest, whatever the target does */
-    bool rests;            /* and has */
     double sense;          /* of braking */
     struct brake brake;    /* as if sense were 1 */
 };
@@ -47,6 +46,12 @@ void takt_follower_start(struct follower *f, const struct brake_limits *limits);
 /* One cycle. target: at the end of the last one; its jerk in the middle of this one. */
 void takt_follower_step(struct follower *f, const struct follower_target *target,
                         const struct follower_end *end);
+
+/* Has it come to rest by braking? */
+static inline bool follower_rests(const struct follower *f)
+{
+    return f->braking && brake_is_over(&f->brake);
+}
 
 /* From now on it comes to rest as fast as it can. */
 void takt_follower_brake(struct follower *f);

@@ -426,7 +426,7 @@ static void finish(struct spindle_sync *l, struct motion *m)
 
 static bool has_landed(const struct spindle_sync *l)
 {
-    return l->phase == SPINDLE_SYNC_FOLLOWS && l->follower.rests && !l->stopped;
+    return l->phase == SPINDLE_SYNC_FOLLOWS && follower_rests(&l->follower) && !l->stopped;
 }
 
 /* From the start of the block the setpoint is in: its line is straight. */
@@ -484,7 +484,8 @@ enum spindle_sync_result takt_spindle_sync_cycle(struct spindle_sync *l, struct 
     if (l->alarm.code != TAKT_OK) {
         command(l, 0.0);
     }
-    if (l->alarm.code != TAKT_OK && (l->phase != SPINDLE_SYNC_FOLLOWS || l->follower.rests)) {
+    if (l->alarm.code != TAKT_OK &&
+        (l->phase != SPINDLE_SYNC_FOLLOWS || follower_rests(&l->follower))) {
         return SPINDLE_SYNC_FAILED;
     }
     if (l->phase == SPINDLE_SYNC_IDLE && can_begin(m)) {

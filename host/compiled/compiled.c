@@ -280,9 +280,9 @@ static bool is_whole(const struct compiled *c)
         intake.ends_taken = intake.ends_came;
         intake.sections_taken = intake.sections_came;
         takt_intake_read(&intake);
-    } while (intake.fault == REPLAY_GOOD && !intake.ended &&
+    } while (intake.fault == REPLAY_GOOD && intake.next != INTAKE_NOTHING &&
              intake.intervals_taken != intake.intervals_came);
-    if (intake.fault == REPLAY_GOOD && intake.ended)
+    if (intake.fault == REPLAY_GOOD && intake.next == INTAKE_NOTHING)
         return true;
     takt_diagnostic_set(&why, TAKT_ERROR_PLAN_DAMAGED, 0, 0, "", 0, 0.0);
     return report(c, &why);

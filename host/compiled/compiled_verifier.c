@@ -113,8 +113,7 @@ static void begin(struct trial *t, FILE *stream)
     takt_path_init(&t->path, &t->limits, &config.start);
     takt_motion_init(&t->motion, &t->path, &config.start, false);
     if (!t->on_board) {
-        takt_handover_allow(&t->motion);
-        takt_handover_allow_linear(&t->motion);
+        takt_handover_allow(&t->motion, MOTION_HANDS_OVER_LINEAR);
         takt_replay_init(&t->replay, takt_path_lend(&t->path, sizeof(struct intake)), &compiled);
     }
     t->look_ahead = t->session->setup.machine.look_ahead_blocks;

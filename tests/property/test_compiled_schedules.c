@@ -263,8 +263,7 @@ static void begin_replay(struct run *r, bool is_stream)
     rewind(r->compiled);
     takt_path_init(&path, &r->limits, &start);
     takt_motion_init(&motion, &path, &start, false);
-    takt_handover_allow(&motion);
-    takt_handover_allow_linear(&motion);
+    takt_handover_allow(&motion, MOTION_HANDS_OVER_LINEAR);
     takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
     memset(&r->schedule, 0, sizeof(r->schedule));
     r->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};

@@ -79,7 +79,7 @@ void bench_start(struct bench *b)
     takt_spindle_sync_init(&b->sync, &b->spindle_sync_config);
     takt_path_init(&b->path, &b->limits, &start);
     takt_motion_init(&b->motion, &b->path, &start, false);
-    takt_handover_allow(&b->motion);
+    takt_handover_allow(&b->motion, MOTION_HANDS_OVER_SYNCHRONIZED);
 }
 
 static void bench_plan(struct bench *b)

@@ -142,7 +142,7 @@ static inline void plan(struct ceiling *c)
         const double length_mm = c->end_mm[k] - (k > 0 ? c->end_mm[k - 1] : 0.0);
 
         p->end_feed_mm_s = feed_mm_s;
-        p->end_feed_max_mm_s = p->landed ? p->feed_mm_s : max_mm_s;
+        p->end_feed_max_mm_s = p->end == CEILING_LANDS ? p->feed_mm_s : max_mm_s;
         feed_mm_s = feed_before(p, p->feed_mm_s, feed_mm_s, length_mm);
         max_mm_s = feed_before(p, takt_ceiling_top_feed(c, k), max_mm_s, length_mm);
     }
@@ -164,7 +164,7 @@ static inline void lay(struct ceiling *c, const struct stretch *s, unsigned coun
         append(c, &s[i], ratio, at_mm);
         at_mm += s[i].length_mm;
     }
-    c->piece[c->count - 1].stop = stops;
+    c->piece[c->count - 1].end = stops ? CEILING_STOPS : CEILING_GOES_ON;
     c->open_from = stops ? c->count : 0;
     c->complete = true;
     plan(c);
@@ -245,11 +245,11 @@ static inline void lay_junction(struct ceiling *c, double feed)
     c->end_mm[0] = 10.0 - room_mm;
     c->piece[1].feed_mm_s = single_feed(feed);
     c->piece[1].start = c->piece[0].leave;
-    c->piece[1].landed = true;
+    c->piece[1].end = CEILING_LANDS;
     c->count = 2;
     append(c, &after, 1.0, 10.0);
     c->end_mm[1] = 10.0;
-    c->piece[2].stop = true;
+    c->piece[2].end = CEILING_STOPS;
     c->open_from = c->count;
     plan(c);
     for (unsigned k = 0; k < 2; k++) {

@@ -80,7 +80,7 @@ static uint64_t write_and_read(const struct ahead_path *path)
     trail_free(&trail);
     rewind(file);
     takt_intake_open(&intake, &source);
-    while (!intake.ended) {
+    while (intake.next != INTAKE_NOTHING) {
         takt_intake_read(&intake);
         TEST_ASSERT_EQUAL_INT(REPLAY_GOOD, intake.fault);
         intake.intervals_taken = intake.intervals_came;

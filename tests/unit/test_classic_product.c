@@ -32,7 +32,7 @@ void setUp(void)
 
     takt_path_init(&path, &mill, &start);
     takt_motion_init(&motion, &path, &start, false);
-    takt_handover_allow_all(&motion);
+    takt_handover_allow(&motion, MOTION_HANDS_OVER_ALL);
     takt_product_init(&product, &config);
     record = (struct cycle_record){0};
     asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};

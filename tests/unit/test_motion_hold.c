@@ -118,12 +118,12 @@ static void test_after_a_hold_the_trapezoidal_reference_goes_on_by_itself(void)
     run(300);
     asked.hold = true;
     run(2); /* in the first cycle pieces of the curve are read */
-    TEST_ASSERT_TRUE(motion.holds);
+    TEST_ASSERT_EQUAL_INT(MOTION_HELD, motion.held);
     run(HOLD_CYCLES_MAX);
     TEST_ASSERT_TRUE(takt_motion_rests(&motion));
     asked.hold = false;
     run(2 * HOLD_CYCLES_MAX);
-    TEST_ASSERT_FALSE(motion.holds);
+    TEST_ASSERT_TRUE(motion.held != MOTION_HELD);
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
@@ -146,7 +146,7 @@ static void test_where_the_axes_stand_before_the_curve_they_are_at_rest_at_once(
         }
         moments += moves ? 1 : 0;
         TEST_ASSERT_LESS_OR_EQUAL_UINT(2, cycles);
-        TEST_ASSERT_FALSE(motion.holds);
+        TEST_ASSERT_TRUE(motion.held != MOTION_HELD);
         run(10);
         TEST_ASSERT_TRUE(takt_motion_rests(&motion));
         asked.hold = false;
@@ -183,7 +183,7 @@ static void test_what_is_known_to_be_fast_enough_is_always_ahead_of_a_setpoint_t
     run(1500);
     asked.hold = true;
     run(10);
-    TEST_ASSERT_TRUE(motion.holds);
+    TEST_ASSERT_EQUAL_INT(MOTION_HELD, motion.held);
     first = h->here;
     while (!takt_motion_rests(&motion)) {
         run(1);

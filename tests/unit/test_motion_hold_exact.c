@@ -200,10 +200,10 @@ static void test_the_trapezoidal_reference_goes_on_where_it_can_rest_before_the_
 {
     run(500);
     (void)cycles_to_rest();
-    TEST_ASSERT_TRUE(motion.holds);
+    TEST_ASSERT_EQUAL_INT(MOTION_HELD, motion.held);
     asked.hold = false;
     run(300);
-    TEST_ASSERT_FALSE(motion.holds);
+    TEST_ASSERT_TRUE(motion.held != MOTION_HELD);
     TEST_ASSERT_FALSE(takt_motion_rests(&motion));
 }
 
@@ -214,10 +214,10 @@ static void test_a_hold_takes_over_from_a_landing(void)
     bends = true;
     do {
         run(1);
-    } while (!motion.reference.run.active ||
+    } while (motion.reference.run.phase != LANDING_ACTIVE ||
              motion.reference.run.cycle < motion.reference.run.ramp);
     (void)cycles_to_rest();
-    TEST_ASSERT_TRUE(motion.holds);
+    TEST_ASSERT_EQUAL_INT(MOTION_HELD, motion.held);
     TEST_ASSERT_EQUAL_UINT32(0, path.first);
     assert_goes_on_to_the_end();
 }
@@ -228,7 +228,7 @@ static void test_where_the_averages_leave_no_memory_the_trapezoidal_reference_br
     set_up(MOVE_FEED, 1000.0, 4200.0, RAMP_PROFILE_SMOOTH);
     run(1500);
     (void)cycles_to_rest();
-    TEST_ASSERT_FALSE(motion.holds);
+    TEST_ASSERT_TRUE(motion.held != MOTION_HELD);
     assert_goes_on_to_the_end();
 }
 
@@ -242,7 +242,7 @@ static void test_pieces_lie_behind_the_inputs_of_the_averages(void)
     const struct average *a = &motion.mover.average;
     const char *inputs_end = (const char *)(a->input + a->box[a->boxes - 1].end);
 
-    TEST_ASSERT_TRUE(motion.holds);
+    TEST_ASSERT_EQUAL_INT(MOTION_HELD, motion.held);
     TEST_ASSERT_EQUAL_UINT(HOLD_PIECES_MAX, h->pieces);
     TEST_ASSERT_EQUAL_PTR(inputs_end, h->store);
     TEST_ASSERT_TRUE((const char *)(h->store + h->pieces * hold_stride(h->axes)) <=

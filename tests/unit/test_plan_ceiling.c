@@ -55,7 +55,7 @@ static void test_blocks_of_one_feed_make_one_piece(void)
     }
     build();
     TEST_ASSERT_EQUAL(1, ceiling.count);
-    TEST_ASSERT_TRUE(ceiling.piece[0].stop);
+    TEST_ASSERT_EQUAL_INT(CEILING_STOPS, ceiling.piece[0].end);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0, ceiling.end_mm[0]);
     TEST_ASSERT_TRUE(ceiling.piece[0].feed_mm_s == 50.0F);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.05, ceiling_feed(&ceiling, ceiling.piece[0].feed_mm_s));

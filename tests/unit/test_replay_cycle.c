@@ -72,7 +72,7 @@ static void begin_path(void)
 
     takt_path_init(&path, &limits, &start);
     takt_motion_init(&motion, &path, &start, false);
-    takt_handover_allow_all(&motion);
+    takt_handover_allow(&motion, MOTION_HANDS_OVER_ALL);
 }
 
 void setUp(void)

@@ -103,13 +103,13 @@ static void test_an_end_is_come_to_rest_on_exactly(void)
         struct follower_target target = {0};
 
         setUp();
-        for (int i = 0; i < 20000 && !follower.rests; i++) {
+        for (int i = 0; i < 20000 && !follower_rests(&follower); i++) {
             target.v_mm_s = end.sense * (20.0 + 15.0 * takt_maths_sin(0.01 * (i + n)));
             target.x_mm += target.v_mm_s * CYCLE_S;
             step(&target, &end);
             TEST_ASSERT_TRUE(end.sense * follower.at.x_mm <= end.sense * end.x_mm + 1e-12);
         }
-        TEST_ASSERT_TRUE(follower.rests);
+        TEST_ASSERT_TRUE(follower_rests(&follower));
         TEST_ASSERT_EQUAL_DOUBLE(end.x_mm, follower.at.x_mm);
         step(&target, &end);
         step(&target, &end);
@@ -127,10 +127,11 @@ static void test_braking_takes_the_least_time(void)
 
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0 + 0.5 * 37.5 * 0.0575, takt_brake_reach(&s, &limits));
     takt_brake_begin(&brake, &s, &limits);
-    while (!takt_brake_step(&brake, CYCLE_S, &s)) {
+    while (!brake_is_over(&brake)) {
+        takt_brake_step(&brake, CYCLE_S, &s);
         cycles++;
     }
-    TEST_ASSERT_EQUAL_INT(57, cycles);
+    TEST_ASSERT_EQUAL_INT(58, cycles);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0 + 0.5 * 37.5 * 0.0575, s.x_mm);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, s.v_mm_s);
 }
@@ -147,7 +148,8 @@ static void test_braking_reaches_no_farther_than_was_said(void)
         struct brake brake;
 
         takt_brake_begin(&brake, &s, &limits);
-        for (int i = 0; i < 1000 && !takt_brake_step(&brake, CYCLE_S / 7.0, &s); i++) {
+        for (int i = 0; i < 1000 && !brake_is_over(&brake); i++) {
+            takt_brake_step(&brake, CYCLE_S / 7.0, &s);
             farthest = maths_max(farthest, s.x_mm);
             TEST_ASSERT_TRUE(maths_abs(s.a_mm_s2) <= limits.acceleration_mm_s2 * (1 + 1e-9));
         }
@@ -166,7 +168,7 @@ static void test_asked_to_brake_it_rests_wherever_that_is(void)
         step(&target, &nowhere);
     }
     takt_follower_brake(&follower);
-    while (!follower.rests) {
+    while (!follower_rests(&follower)) {
         step(&target, &nowhere);
     }
     TEST_ASSERT_EQUAL_DOUBLE(0.0, follower.at.v_mm_s);

@@ -106,7 +106,7 @@ static void open_path(void)
     }
     takt_path_init(&path, &limits, &start);
     takt_motion_init(&motion, &path, &start, false);
-    takt_handover_allow_all(&motion);
+    takt_handover_allow(&motion, MOTION_HANDS_OVER_ALL);
     takt_path_push(&path, &line);
     takt_path_finish(&path);
     takt_path_go_on(&path);
