@@ -209,7 +209,7 @@
     X(DRIVE_HOME_OFFSET,                                                                           \
       "after homing axis %w is at %v %u: change home_offset_is_position for this drive")           \
     X(DRIVE_RANGE, "%v %u is beyond the position range of the drive of axis %w")                   \
-    X(DRIVE_UNREACHABLE, "the bus refused the setpoint of axis %w")                                \
+    X(DRIVE_UNREACHABLE, "the bus refuses frames for the drive of axis %w")                        \
     X(IO_STOP, "the stop input, %w, is open")                                                      \
     X(IO_LIMIT, "the limit input, %w, has opened")                                                 \
     X(IO_ABSENT, "I/O %w has not booted within %v s")                                              \

@@ -5,10 +5,14 @@
 
 #include <string.h>
 
+/* An abort that has not been sent yet goes first, if it is for the same node. */
 static void begin(struct sdo_client *client, uint8_t node, uint32_t object, uint32_t timeout_cycles)
 {
+    const struct sdo_client_abort before = client->abort;
     TAKT_ASSERT(node >= NODE_MIN && node <= NODE_MAX);
     memset(client, 0, sizeof *client);
+    if (before.node == node)
+        client->abort = before;
     client->result = SDO_BUSY;
     client->node = node;
     client->object = object;
@@ -92,9 +96,9 @@ static void write_segment(const struct sdo_client *client, uint16_t cob_id, stru
 bool takt_sdo_client_next(const struct sdo_client *client, struct can_frame *frame)
 {
     uint16_t cob_id = (uint16_t)(SDO_REQUEST_FUNCTION + client->node);
-    if (client->abort_pending) {
-        takt_sdo_write_abort(frame, SDO_REQUEST_FUNCTION, client->node, client->object,
-                             client->abort_code);
+    if (client->abort.node != 0) {
+        takt_sdo_write_abort(frame, SDO_REQUEST_FUNCTION, client->abort.node, client->abort.object,
+                             client->abort.code);
         return true;
     }
     if (!client->send_pending)
@@ -108,9 +112,11 @@ bool takt_sdo_client_next(const struct sdo_client *client, struct can_frame *fra
 
 void takt_sdo_client_sent(struct sdo_client *client)
 {
-    TAKT_ASSERT(client->send_pending || client->abort_pending);
-    client->send_pending = false;
-    client->abort_pending = false;
+    TAKT_ASSERT(client->send_pending || client->abort.node != 0);
+    if (client->abort.node != 0)
+        client->abort.node = 0;
+    else
+        client->send_pending = false;
 }
 
 /* The node has broken the protocol, or let us wait: it is told, so that it forgets the transfer. */
@@ -120,7 +126,7 @@ static void give_up(struct sdo_client *client, enum sdo_result result, uint32_t 
     client->result = result;
     client->abort_code = code;
     client->send_pending = false;
-    client->abort_pending = true;
+    client->abort = (struct sdo_client_abort){client->node, client->object, code};
 }
 
 static void progress(struct sdo_client *client)
@@ -148,13 +154,31 @@ static void finish_upload(struct sdo_client *client)
     client->result = SDO_DONE;
 }
 
+/*
+ * Of the four answers CiA 301 knows beside an abort one that is not due belongs to a transfer
+ * before: it is late, or has come twice.
+ */
+static void take_other(struct sdo_client *client, uint8_t command)
+{
+    switch (command & SDO_COMMAND_MASK) {
+    case SDO_RESPONSE_UPLOAD:
+    case SDO_RESPONSE_DOWNLOAD:
+    case SDO_RESPONSE_UPLOAD_SEGMENT:
+    case SDO_RESPONSE_DOWNLOAD_SEGMENT:
+        break;
+    default:
+        give_up(client, SDO_ABORTED, SDO_ABORT_COMMAND);
+        break;
+    }
+}
+
 /* Answers to the initiating request. */
 static void take_initiated(struct sdo_client *client, const struct can_frame *frame)
 {
     uint8_t command = frame->data[0];
     uint8_t expected = client->is_upload ? SDO_RESPONSE_UPLOAD : SDO_RESPONSE_DOWNLOAD;
     if ((command & SDO_COMMAND_MASK) != expected) {
-        give_up(client, SDO_ABORTED, SDO_ABORT_COMMAND);
+        take_other(client, command);
     } else if (client->is_upload && command & SDO_EXPEDITED) {
         unsigned unused = command & SDO_SIZE_GIVEN ? sdo_unused_expedited(command) : 0;
         take_value(client, frame->data + 4, SDO_EXPEDITED_MAX - unused);
@@ -189,7 +213,7 @@ static void take_segment(struct sdo_client *client, const struct can_frame *fram
     uint8_t expected =
         client->is_upload ? SDO_RESPONSE_UPLOAD_SEGMENT : SDO_RESPONSE_DOWNLOAD_SEGMENT;
     if ((command & SDO_COMMAND_MASK) != expected) {
-        give_up(client, SDO_ABORTED, SDO_ABORT_COMMAND);
+        take_other(client, command);
         return;
     }
     if ((command & SDO_TOGGLE) != client->toggle)

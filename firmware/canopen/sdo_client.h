@@ -12,8 +12,9 @@
  *
  * Goals: a lost, late, doubled or foreign frame never completes a transfer wrongly; a transfer
  * always ends, at the latest timeout_cycles after its last progress. An answer that belongs to
- * another object, or comes when none is due, is passed over. A lost request or response is not
- * repeated here: the whole transfer may be, by its owner.
+ * another object, is of another kind, or comes when none is due, is passed over. A lost request or
+ * response is not repeated here: the whole transfer may be, by its owner, and the node is told
+ * before that it has been given up.
  */
 #ifndef TAKT_CANOPEN_SDO_CLIENT_H
 #define TAKT_CANOPEN_SDO_CLIENT_H
@@ -31,6 +32,13 @@ enum sdo_result {
     SDO_UNANSWERED /* no answer in time */
 };
 
+/* A node that is to be told that we give up, and what; node 0: none is. */
+struct sdo_client_abort {
+    uint8_t node;
+    uint32_t object;
+    uint32_t code;
+};
+
 struct sdo_client {
     enum sdo_result result;
     uint8_t node;
@@ -45,7 +53,7 @@ struct sdo_client {
     bool is_segmented;
     bool in_segments; /* the transfer has been initiated */
     bool send_pending;
-    bool abort_pending; /* the node is to be told that we give up */
+    struct sdo_client_abort abort;
     uint8_t toggle;
     uint8_t moved; /* bytes of the value transferred, those in an unanswered request not */
     uint32_t timeout_cycles;

@@ -27,13 +27,23 @@ static void init_axis(struct drives *d, unsigned index)
     d->axis_of_node[bus][d->node[index]] = (uint8_t)index;
 }
 
+/* Heartbeats come once a cycle at most: a shorter period is that, for all who are told of it. */
+static uint16_t beat_ms(const struct drives_config *config)
+{
+    const uint32_t least_ms = (config->cycle_us + 999) / 1000;
+    if (config->heartbeat_ms == 0 || config->heartbeat_ms > least_ms)
+        return config->heartbeat_ms;
+    return (uint16_t)least_ms;
+}
+
 static void take_times(struct drives *d, const struct drives_config *config)
 {
     d->cycle_us = config->cycle_us;
-    d->heartbeat_ms = config->heartbeat_ms;
-    d->heartbeat_cycles = (uint32_t)config->heartbeat_ms * 1000 / config->cycle_us;
+    d->heartbeat_ms = beat_ms(config);
+    const uint32_t lost_us = DRIVES_HEARTBEATS_LOST * 1000 * (uint32_t)d->heartbeat_ms;
+    d->heartbeat_cycles = (uint32_t)d->heartbeat_ms * 1000 / d->cycle_us;
     d->heartbeat_age_max_cycles =
-        d->heartbeat_cycles > 0 ? d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST : UINT32_MAX;
+        lost_us > 0 ? (lost_us + d->cycle_us - 1) / d->cycle_us : UINT32_MAX;
     d->boot_timeout_cycles = config->boot_timeout_cycles;
     d->start_timeout_cycles = config->start_timeout_cycles;
     d->answer_timeout_cycles = config->answer_timeout_cycles;
@@ -65,9 +75,13 @@ static void check_load(struct drives *d, const struct drives_config *config)
 {
     struct drives_load load;
     for (unsigned bus = 0; bus < drives_bus_count(d) && d->state != DRIVES_FAULTED; bus++) {
-        const struct drives_traffic traffic = {d->on_bus[bus], bus,
-                                               config->wiring, config->io_count,
-                                               config->rates,  config->no_error_pdo};
+        const struct drives_traffic traffic = {.count = d->on_bus[bus],
+                                               .bus = bus,
+                                               .heartbeat_ms = d->heartbeat_ms,
+                                               .wiring = config->wiring,
+                                               .io_count = config->io_count,
+                                               .rates = config->rates,
+                                               .no_error_pdo = config->no_error_pdo};
         if (takt_drives_predict_whole_load(&traffic, config->cycle_us, &load))
             continue;
         d->state = DRIVES_FAULTED;

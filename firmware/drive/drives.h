@@ -320,12 +320,19 @@ bool takt_drives_predict_load(unsigned count, const struct drives_rates *rates, 
                               struct drives_load *load);
 
 /*
+ * Heartbeats of nodes in a cycle, rounded up. Each sends its own by its own clock: on the average
+ * no more come, and where one does for all, they do not meet as a rule.
+ */
+uint32_t takt_drives_beats(uint32_t nodes, uint32_t heartbeat_ms, uint32_t cycle_us);
+
+/*
  * What is on a bus: drives, and of all I/O nodes those that are on it, with as many inputs and
  * outputs as are wired.
  */
 struct drives_traffic {
     unsigned count; /* drives on it */
     unsigned bus;
+    uint32_t heartbeat_ms; /* 0: none */
     const struct io_wiring *wiring;
     unsigned io_count;
     struct drives_rates rates;

@@ -180,7 +180,7 @@ void takt_drives_take_ask(struct drives *d, const struct drives_answer *answer)
 
 #define REQUIRED  DRIVES_GIVEN_UP_COUNT
 #define NOTHING   (DRIVES_GIVEN_UP_COUNT + 1)
-#define SET_PLAIN 14 /* from here on: only where the axis is homed */
+#define SET_PLAIN 15 /* from here on: only where the axis is homed */
 
 struct setting {
     uint16_t index;
@@ -192,15 +192,16 @@ struct setting {
 #define SET_GUARD     2 /* and the life time factor: only where there is no heartbeat */
 #define SET_LIFE      3
 #define SET_SYNC      4
-#define SET_PERIOD    7
-#define SET_EXPONENT  8
-#define SET_RAMPS     12 /* up and down: only of profile velocity */
+#define SET_PERIOD    8
+#define SET_EXPONENT  9
+#define SET_RAMPS     13 /* up and down: only of profile velocity */
 static const struct setting settings[] = {
     {OBJECT_PRODUCER_HEARTBEAT, 0, 2, DRIVES_NO_HEARTBEAT},
     {OBJECT_CONSUMER_HEARTBEAT, 1, 4, DRIVES_NO_WATCH},
     {OBJECT_GUARD_TIME, 0, 2, NOTHING},
     {OBJECT_LIFE_TIME_FACTOR, 0, 1, NOTHING},
     {OBJECT_SYNC_COB_ID, 0, 4, REQUIRED},
+    {OBJECT_SYNC_PERIOD, 0, 4, NOTHING}, /* 1019 is taken while that is 0 alone */
     {OBJECT_SYNC_OVERFLOW, 0, 1, NOTHING},
     {OBJECT_SYNC_PERIOD, 0, 4, DRIVES_NO_SYNC_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 1, 1, DRIVES_NO_PERIOD},
@@ -275,6 +276,7 @@ static uint32_t value_of(const struct drives *d, unsigned number)
                                takt_drives_guard_ms(d),
                                DRIVES_HEARTBEATS_LOST,
                                SYNC_COB_ID,
+                               0,
                                0,
                                d->cycle_us,
                                period,

@@ -32,18 +32,13 @@ static void raise_state(struct drives *d, unsigned index)
                           takt_cia402_state_text(state));
 }
 
-static inline bool is_silent(const struct drives *d, const struct drives_axis *axis)
-{
-    return drives_silent_cycles(d, axis) > d->answer_timeout_cycles;
-}
-
 static void raise_link(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
     TAKT_ASSERT(index < d->count);
     if (!cia402_is_enabled(axis->statusword))
         raise_state(d, index);
-    else if (is_silent(d, axis))
+    else if (drives_is_silent(d, axis))
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
                           takt_drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else

@@ -137,6 +137,14 @@ static bool shows_mode(struct drives *d)
            (d->sdo.result == SDO_DONE && (uint8_t)takt_sdo_client_number(&d->sdo) == axis->mode);
 }
 
+/* The question or its answer has got lost: it is asked again, and then the drive is lost. */
+static void miss_mode(struct drives *d)
+{
+    if (d->repeats++ == DRIVES_SDO_REPEATS)
+        takt_drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
+                                 takt_drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
+}
+
 /*
  * Modes are not in the statusword: object 6061 is read, of one drive after the other, until it
  * agrees.
@@ -154,11 +162,15 @@ void takt_drives_select(struct drives *d)
     }
     if (shows_mode(d)) {
         d->at_axis++;
+        d->repeats = 0;
         d->phase_cycles = 0;
+    } else if (d->sdo.result == SDO_UNANSWERED) {
+        miss_mode(d);
     } else if (is_late(d)) {
         takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
-        return;
     }
+    if (d->state != DRIVES_STARTING)
+        return;
     if (d->at_axis == d->count)
         begin_homing(d);
     else if (takt_drives_tells_mode(&d->axis[d->at_axis]))

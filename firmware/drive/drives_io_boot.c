@@ -233,7 +233,7 @@ static bool all_work(const struct drives *d)
 static void raise_silent(struct drives *d)
 {
     for (unsigned i = 0; i < d->io_count; i++)
-        if (!d->io[i].heard && d->io[i].input_bytes > 0)
+        if (!d->io[i].started || (!d->io[i].heard && d->io[i].input_bytes > 0))
             takt_drives_io_raise(d, i, TAKT_ERROR_IO_SILENT,
                                  takt_drives_cycles_ms(d, d->start_timeout_cycles), NULL);
 }
@@ -251,12 +251,22 @@ void takt_drives_io_start(struct drives *d)
     }
 }
 
-/* One node a cycle, once all have been asked; what one has sent before is history. */
+/* It has been started, and has said something since, unless that is just to come. */
+static bool is_up(const struct drives *d, const struct drives_io *io)
+{
+    return io->started && (io->heard || io->input_bytes == 0 ||
+                           d->cycle - io->reported <= d->answer_timeout_cycles);
+}
+
+/*
+ * One node a cycle, once all have been asked; what one has sent before is history. A start may get
+ * lost: it comes again.
+ */
 void takt_drives_io_send_start(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->io_count && d->at_axis == d->io_count; i++) {
         struct drives_io *io = &d->io[i];
-        if (io->started)
+        if (is_up(d, io))
             continue;
         io->started = send_nmt(d, port, i, NMT_START);
         takt_drives_begin_guard(d, &io->guard);

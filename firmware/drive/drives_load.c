@@ -74,6 +74,24 @@ static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle
     return load->percent <= 100.0;
 }
 
+uint32_t takt_drives_beats(uint32_t nodes, uint32_t heartbeat_ms, uint32_t cycle_us)
+{
+    TAKT_ASSERT(nodes > 0 && cycle_us > 0);
+    const uint32_t between = (uint32_t)(1000 * (uint64_t)heartbeat_ms / cycle_us);
+    if (heartbeat_ms == 0)
+        return 1;
+    return between > 0 ? (nodes + between - 1) / between : nodes;
+}
+
+/* Beside the first one: drives, I/O nodes and the controller. */
+static uint32_t more_beats(const struct drives_traffic *traffic, uint32_t cycle_us)
+{
+    uint32_t nodes = traffic->count + 1;
+    for (unsigned i = 0; i < traffic->io_count; i++)
+        nodes += traffic->wiring[i].bus == traffic->bus;
+    return takt_drives_beats(nodes, traffic->heartbeat_ms, cycle_us) - 1;
+}
+
 bool takt_drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
                                     struct drives_load *load)
 {
@@ -84,6 +102,7 @@ bool takt_drives_predict_whole_load(const struct drives_traffic *traffic, uint32
     load->bits = takt_drives_io_wired_bits(traffic->wiring, traffic->io_count, traffic->bus, rates);
     for (unsigned i = 0; i < frames; i++)
         load->bits += takt_drives_frame_bits(rates, length[i]);
+    load->bits += more_beats(traffic, cycle_us) * takt_drives_frame_bits(rates, HEARTBEAT_LENGTH);
     return set_share(load, rates->nominal, cycle_us);
 }
 
@@ -105,12 +124,22 @@ static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
     return (uint8_t)(is_kept ? d->frame_max : end);
 }
 
+static uint32_t beats_on(const struct drives *d, unsigned bus)
+{
+    uint32_t nodes = 1;
+    for (unsigned i = 0; i < d->count; i++)
+        nodes += drives_bus_of(d, i) == bus;
+    for (unsigned i = 0; i < d->io_count; i++)
+        nodes += drives_io_bus_of(d, i) == bus;
+    return takt_drives_beats(nodes, d->heartbeat_ms, d->cycle_us);
+}
+
 void takt_drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load)
 {
     unsigned error_length = 0;
     bool has_error = false;
     TAKT_ASSERT(bus < CAN_BUSES_MAX);
-    load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) +
+    load->bits = drives_bits(d, 0) + beats_on(d, bus) * drives_bits(d, HEARTBEAT_LENGTH) +
                  takt_drives_io_bits(d, bus) + takt_drives_guard_bits(d, bus);
     for (unsigned i = 0; i < d->count; i++) {
         if (drives_bus_of(d, i) != bus)

@@ -93,6 +93,10 @@ static inline uint32_t drives_silent_cycles(const struct drives *d, const struct
 {
     return d->cycle - axis->reported;
 }
+static inline bool drives_is_silent(const struct drives *d, const struct drives_axis *axis)
+{
+    return drives_silent_cycles(d, axis) > d->answer_timeout_cycles;
+}
 static inline uint32_t drives_heartbeat_age_cycles(const struct drives *d,
                                                    const struct drives_axis *axis)
 {
@@ -287,8 +291,7 @@ void takt_drives_check_all_links(struct drives *d);
 /* Enabled, and neither reports nor heartbeats have ceased. */
 static inline bool drives_is_linked(const struct drives *d, const struct drives_axis *axis)
 {
-    return cia402_is_enabled(axis->statusword) &&
-           drives_silent_cycles(d, axis) <= d->answer_timeout_cycles &&
+    return cia402_is_enabled(axis->statusword) && !drives_is_silent(d, axis) &&
            drives_heartbeat_age_cycles(d, axis) <= d->heartbeat_age_max_cycles;
 }
 

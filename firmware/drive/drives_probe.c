@@ -42,7 +42,7 @@ bool takt_drives_have_probed(const struct drives *d)
 static void begin(struct drives *d, unsigned what)
 {
     d->probing = (uint8_t)what;
-    d->at_axis = d->at_step = 0;
+    d->at_axis = d->at_step = d->repeats = 0;
     d->sdo.result = SDO_IDLE;
 }
 
@@ -97,10 +97,17 @@ static void take_latched(struct drives *d, uint32_t value)
     d->at_step++;
 }
 
-/* Without an answer, or with a refusal, the position is that of the cycle. */
+/*
+ * With a refusal, or without an answer though it was asked for again, the position is that of the
+ * cycle, which is told.
+ */
 static void take(struct drives *d)
 {
-    if (d->sdo.result == SDO_ABORTED && d->probing & PROBE_ARMS)
+    const bool is_lost = d->sdo.result == SDO_UNANSWERED;
+    if (is_lost && d->repeats++ < DRIVES_SDO_REPEATS)
+        return;
+    d->repeats = 0;
+    if (is_lost || (d->sdo.result == SDO_ABORTED && d->probing & PROBE_ARMS))
         takt_drives_give_up(d, d->at_axis, DRIVES_NO_TOUCH_PROBE);
     if (d->sdo.result != SDO_DONE)
         d->at_step = STEPS;

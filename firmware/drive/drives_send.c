@@ -159,10 +159,19 @@ static void send_start(struct drives *d, const struct can_port *port)
     axis->heartbeat = d->cycle;
 }
 
+/* Of so many turns one. */
+#define START_AGAIN_US 100000U
+
+static bool is_start_due(const struct drives *d)
+{
+    const uint32_t turns = START_AGAIN_US / d->cycle_us + 1;
+    return d->phase_cycles / d->count % turns == turns - 1;
+}
+
 /*
  * A drive that does not follow setpoints is told to be where it is, so that it does not jump when
  * it does. One drive a cycle gets its controlword, in turn and repeatedly: the load stays that of a
- * normal cycle and a frame may get lost.
+ * normal cycle and a frame may get lost. So may NMT start: one that says nothing gets it again.
  */
 static void send_enabling(struct drives *d, const struct can_port *port)
 {
@@ -171,6 +180,8 @@ static void send_enabling(struct drives *d, const struct can_port *port)
     struct drives_axis *turn = &d->axis[d->cycle % d->count];
     if (turn->heard)
         send_controlword(turn, port, takt_drives_controlword(d, turn), false);
+    else if (is_start_due(d))
+        (void)takt_drives_send_nmt(&port[drives_axis_bus(turn)], NMT_START, turn->config.node);
     for (unsigned i = 0; i < d->count; i++)
         if (!takt_drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
             takt_drives_rest(&d->axis[i]);
@@ -257,17 +268,21 @@ static void send_operation(struct drives *d, const struct can_port *port,
 
 /*
  * All at once; then, one a cycle, again to those whose statusword does not show it, for a frame may
- * get lost.
+ * get lost. One that stays in quick stop, with torque (605A: 5 ... 8), is switched off when its
+ * time to brake is over: CiA 402, transition 12. Not when it stands, for its position may be stuck.
  */
 static void send_quick_stop(struct drives *d, const struct can_port *port)
 {
     unsigned turn = d->count > 0 ? d->cycle % d->count : 0;
     for (unsigned i = 0; i < d->count; i++) {
         struct drives_axis *axis = &d->axis[i];
-        bool is_told = axis->controlword == CIA402_QUICK_STOP_NOW;
-        if (!is_told ||
-            (i == turn && (takt_drives_axis_is_enabled(axis) || drives_silent_cycles(d, axis) > 1)))
-            send_controlword(axis, port, CIA402_QUICK_STOP_NOW, true);
+        bool is_off =
+            d->state == DRIVES_FAULTED && takt_cia402_state(axis->statusword) == CIA402_QUICK_STOP;
+        uint16_t word = is_off ? CIA402_DISABLE_VOLTAGE : CIA402_QUICK_STOP_NOW;
+        bool is_shown = !is_off && !takt_drives_axis_is_enabled(axis);
+        if (axis->controlword != word ||
+            (i == turn && (!is_shown || drives_silent_cycles(d, axis) > 1)))
+            send_controlword(axis, port, word, true);
     }
 }
 

@@ -276,12 +276,16 @@ static void configure(struct drives *d)
     next_step(d);
 }
 
-static bool all_are_started(const struct drives *d)
+/* One that has not been for so long cannot be: the bus takes no frame for it. */
+static bool all_are_started(struct drives *d)
 {
-    for (unsigned i = 0; i < d->count; i++)
-        if (!d->axis[i].started)
-            return false;
-    return true;
+    bool all = true;
+    for (unsigned i = 0; i < d->count; i++) {
+        all = all && d->axis[i].started;
+        if (!d->axis[i].started && d->phase_cycles > d->start_timeout_cycles)
+            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
+    }
+    return all;
 }
 
 static bool all_are_enabled(const struct drives *d)
@@ -306,7 +310,7 @@ static void raise_not_enabled(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
     enum cia402_state state = takt_cia402_state(axis->statusword);
-    if (!axis->heard)
+    if (!axis->heard || drives_is_silent(d, axis))
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
                           takt_drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else if (state == CIA402_FAULT)

@@ -257,6 +257,7 @@ bool takt_machine_predict_load(const struct machine *machine, unsigned bus,
     uint8_t node[MACHINE_NODES_MAX];
     const struct drives_traffic traffic = {.count = takt_machine_bus_nodes(machine, bus, node),
                                            .bus = bus,
+                                           .heartbeat_ms = machine->heartbeat_ms,
                                            .wiring = machine->io,
                                            .io_count = takt_machine_io_count(machine),
                                            .rates = takt_machine_get_rates(machine),

@@ -15,6 +15,9 @@
 #define AMPERE_PER_COUNT  0.1
 #define WORD_MAX          65535.0
 
+/* Requests to reset: an answer may get lost, a refusal stays one. */
+#define RESETS_MAX 3
+
 void takt_vfd_init(struct vfd *vfd, const struct vfd_config *config)
 {
     TAKT_ASSERT(config->cycle_us > 0 && config->pole_pairs > 0);
@@ -97,7 +100,7 @@ static void take_answer(struct vfd *v, const uint16_t *word)
         take_load(v, word);
         break;
     case VFD_RESETS:
-        v->wants_reset = false;
+        v->resets = 0;
         v->is_written = false;
         break;
     case VFD_NOTHING:
@@ -121,6 +124,7 @@ static bool end_request(struct vfd *v, const struct registers_port *port)
     case REGISTERS_FAILED:
         break;
     }
+    v->is_refused = v->request == VFD_WRITES_COMMAND;
     v->is_written = false;
     return true;
 }
@@ -145,18 +149,32 @@ static void read_report(struct vfd *v, const struct registers_port *port)
     }
 }
 
-/* After each command comes a report, so that a ramp does not silence the reports. */
+static void reset(struct vfd *v, const struct registers_port *port)
+{
+    static const uint16_t word = VFD_RESET;
+
+    v->resets--;
+    v->is_refused = false;
+    v->request = VFD_RESETS;
+    port->write(port->context, VFD_CONTROL, 1, &word);
+}
+
+/*
+ * After each command, and each reset, comes a report, so that neither a ramp nor a converter that
+ * refuses silences the reports. The command is first, for it may be STOP; where it is refused, as
+ * of one that has tripped, the reset.
+ */
 static void begin_request(struct vfd *v, const struct registers_port *port, double commanded_rpm)
 {
-    static const uint16_t reset = VFD_RESET;
-    const bool reported = v->request != VFD_WRITES_COMMAND;
+    const bool reported = v->request != VFD_WRITES_COMMAND && v->request != VFD_RESETS;
     uint16_t word[2];
 
     wanted_command(v, commanded_rpm, word);
-    if (v->wants_reset) {
-        v->request = VFD_RESETS;
-        port->write(port->context, VFD_CONTROL, 1, &reset);
-    } else if (reported && (!v->is_written || memcmp(word, v->command, sizeof v->command) != 0)) {
+    const bool is_due = !v->is_written || memcmp(word, v->command, sizeof v->command) != 0;
+
+    if (reported && v->resets > 0 && (!is_due || v->is_refused)) {
+        reset(v, port);
+    } else if (reported && is_due) {
         write_command(v, port, word);
     } else {
         read_report(v, port);
@@ -203,5 +221,5 @@ bool takt_vfd_is_stopped(const struct vfd *vfd)
 
 void takt_vfd_reset(struct vfd *vfd)
 {
-    vfd->wants_reset = true;
+    vfd->resets = RESETS_MAX;
 }

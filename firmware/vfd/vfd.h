@@ -69,10 +69,11 @@ struct vfd {
     double ramp_rpm;     /* commanded now */
     uint16_t command[2]; /* as last written: command, frequency */
     bool is_written;     /* command[] has been acknowledged since the line is there */
-    bool wants_reset;
-    uint64_t quiet_us; /* since the last answer */
-    bool heard;        /* ever */
-    uint16_t error;    /* number of the trip; 0: none */
+    bool is_refused;     /* the command was the last time */
+    uint8_t resets;      /* that may still be tried */
+    uint64_t quiet_us;   /* since the last answer */
+    bool heard;          /* ever */
+    uint16_t error;      /* number of the trip; 0: none */
     double current_a;
     struct spindle_feedback feedback;
 };
@@ -93,7 +94,7 @@ void takt_vfd_stop(struct vfd *vfd);
 /* It has been written, or the converter does not answer. */
 bool takt_vfd_is_stopped(const struct vfd *vfd);
 
-/* Acknowledges a trip: the converter is reset once. */
+/* Acknowledges a trip: the converter is reset; where it does not acknowledge that, three times. */
 void takt_vfd_reset(struct vfd *vfd);
 
 #endif

@@ -67,16 +67,52 @@ static void add_errors(struct bus_plan *plan)
         add_message(plan, "TPDO2", highest, plan->error_length, BUS_PLAN_ERRORS);
 }
 
-static void add_states(struct bus_plan *plan, const struct drives *drives, unsigned bus)
+/* As often as nodes send them at most, a cycle apart at least. */
+static uint64_t beat_ns(const struct machine *machine)
+{
+    const uint64_t cycle_ns = UINT64_C(1000) * machine->cycle_us;
+    const uint64_t cycles = UINT64_C(1000000) * machine->heartbeat_ms / cycle_ns;
+
+    return cycles > 1 ? cycles * cycle_ns : cycle_ns;
+}
+
+static void add_states(struct bus_plan *plan, const struct machine *machine,
+                       const struct drives *drives, unsigned bus)
 {
     const unsigned id = NMT_HEARTBEAT_FUNCTION + NODE_MIN;
 
-    add_message(plan, "heartbeat", id, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
+    add_message(plan, "heartbeat", NMT_HEARTBEAT_FUNCTION + NODE_MAX, HEARTBEAT_LENGTH,
+                BUS_PLAN_STATES);
+    plan->message[plan->count - 1].period_ns = beat_ns(machine);
     if (takt_drives_are_guarding(drives, bus)) {
         add_message(plan, "guarding", id + 1, 0, BUS_PLAN_STATES);
         plan->message[plan->count - 1].is_remote = true;
         add_message(plan, "its answer", id + 2, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
     }
+}
+
+/*
+ * Each node has a clock of its own, so the heartbeats of all may meet: the plan's is the last of
+ * them.
+ */
+static void predict(struct bus_plan *plan, const struct machine *machine, unsigned bus)
+{
+    struct bus_message all[BUS_PLAN_MAX + MACHINE_NODES_MAX + IO_NODES_MAX];
+    uint64_t worst_ns[sizeof all / sizeof all[0]];
+    uint8_t node[MACHINE_NODES_MAX];
+    unsigned others = takt_machine_bus_nodes(machine, bus, node);
+
+    for (unsigned i = 0; i < takt_machine_io_count(machine); i++)
+        others += machine->io[i].bus == bus;
+    memcpy(all, plan->message, sizeof plan->message);
+    for (unsigned i = 0; i < others && machine->heartbeat_ms > 0; i++)
+        all[plan->count + i] =
+            (struct bus_message){.id = (uint16_t)(NMT_HEARTBEAT_FUNCTION + NODE_MIN + 3 + i),
+                                 .length = HEARTBEAT_LENGTH,
+                                 .period_ns = beat_ns(machine)};
+    (void)bus_response_predict(all, plan->count + (machine->heartbeat_ms > 0 ? others : 0),
+                               &plan->rates, worst_ns);
+    memcpy(plan->worst_ns, worst_ns, plan->count * sizeof worst_ns[0]);
 }
 
 /* Any of a group may be the last of it. */
@@ -108,8 +144,8 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const st
         add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_CLASSIC_MAX,
                     BUS_PLAN_SDO);
     }
-    add_states(plan, drives, bus);
-    (void)bus_response_predict(plan->message, plan->count, &plan->rates, plan->worst_ns);
+    add_states(plan, machine, drives, bus);
+    predict(plan, machine, bus);
     level_groups(plan);
 }
 

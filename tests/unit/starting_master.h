@@ -23,11 +23,20 @@ static uint16_t shown_bits[128];
 static uint16_t control[128]; /* last controlword of a node */
 static int32_t shown_inc;     /* actual position of all */
 static int32_t target_of_3;   /* last target of node 3 */
+static unsigned lost_starts;  /* NMT starts that get lost */
+static bool refuses_starts;   /* the bus takes none */
 
 static inline bool port_send(void *context, const struct can_frame *frame)
 {
+    const bool is_start = frame->id == 0 && frame->data[0] == NMT_START;
     (void)context;
+    if (is_start && refuses_starts)
+        return false;
     frames_sent++;
+    if (is_start && lost_starts > 0) {
+        lost_starts--;
+        return true;
+    }
     fake_nodes_take(&nodes, frame);
     if ((frame->id & 0x780) == 0x200)
         control[frame->id & 0x7F] = little_endian_read16(frame->data);
@@ -72,11 +81,15 @@ static inline void put_statuses(void)
     for (unsigned i = 0; i < config.count; i++) {
         unsigned node = config.axis[i].node;
         struct can_frame *frame;
-        if (nodes.starts[node] == 0 || node == nodes.mute)
+        const bool is_started = nodes.starts[node] > 0;
+        if (nodes.resets[node] == 0 || node == nodes.mute)
+            continue;
+        if (cycles_run % 100 == node)
+            takt_nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node,
+                                     is_started ? NMT_OPERATIONAL : NMT_PREOPERATIONAL);
+        if (!is_started)
             continue;
         shown[node] = next_state(node);
-        if (cycles_run % 100 == node)
-            takt_nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
         frame = fake_nodes_add(&nodes);
         *frame = (struct can_frame){.id = (uint16_t)(PDO_TPDO1_FUNCTION + node), .length = 6};
         little_endian_write16(frame->data,
@@ -117,7 +130,8 @@ void setUp(void)
     memset(control, 0, sizeof control);
     for (unsigned i = 0; i < 128; i++)
         shown[i] = CIA402_SWITCH_ON_DISABLED;
-    cycles_run = frames_sent = 0;
+    cycles_run = frames_sent = lost_starts = 0;
+    refuses_starts = false;
     shown_inc = 0;
     follows_at_once = true;
     deaf_edges = 0;

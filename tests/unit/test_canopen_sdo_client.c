@@ -21,13 +21,18 @@ void tearDown(void)
 {
 }
 
-static void assert_sent(const uint8_t bytes[8])
+static void assert_sent_first(const uint8_t bytes[8])
 {
     TEST_ASSERT_TRUE(takt_sdo_client_next(&client, &frame));
     TEST_ASSERT_EQUAL_HEX16(0x605, frame.id);
     TEST_ASSERT_EQUAL_UINT(8, frame.length);
     TEST_ASSERT_EQUAL_HEX8_ARRAY(bytes, frame.data, 8);
     takt_sdo_client_sent(&client);
+}
+
+static void assert_sent(const uint8_t bytes[8])
+{
+    assert_sent_first(bytes);
     TEST_ASSERT_FALSE(takt_sdo_client_next(&client, &frame));
 }
 
@@ -173,13 +178,53 @@ static void test_a_value_without_an_end_is_given_up_and_the_node_told(void)
     SENT(0x80, 0x08, 0x10, 0x00, 0x05, 0x00, 0x04, 0x05);
 }
 
-static void test_an_answer_of_the_wrong_kind_is_given_up(void)
+static void test_an_answer_that_no_request_has_is_given_up(void)
 {
     takt_sdo_client_upload(&client, 5, SDO_OBJECT(0x1000, 0), TIMEOUT);
     SENT(0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0);
-    TAKE(0x60, 0x00, 0x10, 0x00, 0, 0, 0, 0);
+    TAKE(0xC0, 0x00, 0x10, 0x00, 0, 0, 0, 0);
     TEST_ASSERT_EQUAL_INT(SDO_ABORTED, client.result);
     TEST_ASSERT_EQUAL_HEX32(SDO_ABORT_COMMAND, client.abort_code);
+}
+
+static void test_a_late_answer_to_a_transfer_of_another_kind_is_passed_over(void)
+{
+    takt_sdo_client_upload(&client, 5, SDO_OBJECT(0x1401, 1), TIMEOUT);
+    SENT(0x40, 0x01, 0x14, 0x01, 0, 0, 0, 0);
+    TAKE(0x60, 0x01, 0x14, 0x01, 0, 0, 0, 0);
+    TEST_ASSERT_TRUE(sdo_client_is_busy(&client));
+    TAKE(0x43, 0x01, 0x14, 0x01, 1, 3, 0, 0);
+    assert_done();
+    TEST_ASSERT_EQUAL_HEX32(0x301, takt_sdo_client_number(&client));
+}
+
+static void test_a_doubled_answer_does_not_end_the_segments(void)
+{
+    takt_sdo_client_upload(&client, 5, SDO_OBJECT(0x1008, 0), TIMEOUT);
+    SENT(0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0);
+    TAKE(0x41, 0x08, 0x10, 0x00, 5, 0, 0, 0);
+    SENT(0x60, 0, 0, 0, 0, 0, 0, 0);
+    TAKE(0x41, 0x08, 0x10, 0x00, 5, 0, 0, 0);
+    TEST_ASSERT_TRUE(sdo_client_is_busy(&client));
+    TAKE(0x05, 'd', 'r', 'i', 'v', 'e', 0, 0);
+    assert_done();
+}
+
+static void test_the_abort_of_a_transfer_is_sent_before_it_is_repeated(void)
+{
+    takt_sdo_client_upload(&client, 5, SDO_OBJECT(0x1000, 0), TIMEOUT);
+    SENT(0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0);
+    for (unsigned i = 0; i <= TIMEOUT; i++)
+        takt_sdo_client_tick(&client);
+    TEST_ASSERT_EQUAL_INT(SDO_UNANSWERED, client.result);
+    takt_sdo_client_upload(&client, 5, SDO_OBJECT(0x1000, 0), TIMEOUT);
+    assert_sent_first((const uint8_t[8]){0x80, 0x00, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05});
+    TAKE(0x43, 0x00, 0x10, 0x00, 1, 0, 0, 0);
+    TEST_ASSERT_TRUE(sdo_client_is_busy(&client)); /* that was the answer to the one before */
+    SENT(0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0);
+    TAKE(0x43, 0x00, 0x10, 0x00, 2, 0, 0, 0);
+    assert_done();
+    TEST_ASSERT_EQUAL_UINT32(2, takt_sdo_client_number(&client));
 }
 
 static void test_silence_ends_a_transfer_after_the_timeout_and_not_before(void)
@@ -235,7 +280,10 @@ int main(void)
     RUN_TEST(test_an_answer_shorter_than_8_bytes_is_none);
     RUN_TEST(test_a_doubled_segment_counts_once);
     RUN_TEST(test_a_value_without_an_end_is_given_up_and_the_node_told);
-    RUN_TEST(test_an_answer_of_the_wrong_kind_is_given_up);
+    RUN_TEST(test_an_answer_that_no_request_has_is_given_up);
+    RUN_TEST(test_a_late_answer_to_a_transfer_of_another_kind_is_passed_over);
+    RUN_TEST(test_a_doubled_answer_does_not_end_the_segments);
+    RUN_TEST(test_the_abort_of_a_transfer_is_sent_before_it_is_repeated);
     RUN_TEST(test_silence_ends_a_transfer_after_the_timeout_and_not_before);
     RUN_TEST(test_every_segment_has_the_whole_timeout);
     RUN_TEST(test_a_request_that_could_not_be_sent_is_given_again);

@@ -328,6 +328,80 @@ static void test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_befor
     TEST_ASSERT_EQUAL_UINT(0, frames_sent);
 }
 
+static void test_a_start_that_the_bus_refuses_ends_after_its_time(void)
+{
+    refuses_starts = true;
+    run_start();
+    TEST_ASSERT_TRUE(drives_get_state(&drives) != DRIVES_STARTING);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_UNREACHABLE, takt_drives_get_fault(&drives)->code);
+}
+
+static void test_a_start_that_gets_lost_is_sent_again(void)
+{
+    for (unsigned count = 1; count <= 2 * DRIVES; count++) {
+        setUp();
+        lost_starts = count;
+        run_start();
+        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+        TEST_ASSERT_EQUAL_UINT(0, lost_starts);
+    }
+}
+
+static void test_a_lost_question_for_the_mode_is_asked_again(void)
+{
+    config.sdo_timeout_cycles = 1500; /* longer than a drive may take to show its mode */
+    set_rule(
+        (struct fake_rule){.node = 2, .object = SDO_OBJECT(0x6061, 0), .value = 8, .silent = 2});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    setUp();
+    config.sdo_timeout_cycles = 100;
+    set_rule(
+        (struct fake_rule){.node = 2, .object = SDO_OBJECT(0x6061, 0), .value = 8, .silent = 3});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_UNANSWERED, takt_drives_get_fault(&drives)->code);
+}
+
+static void test_a_drive_that_falls_silent_while_it_is_enabled_is_told_as_silent(void)
+{
+    shown_bits[2] = 0;
+    takt_drives_init(&drives, &config);
+    while (nodes.starts[2] == 0 || shown[2] == CIA402_SWITCH_ON_DISABLED)
+        cycle();
+    nodes.mute = 2;
+    run_until(DRIVES_FAULTED);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SILENT, takt_drives_get_fault(&drives)->code);
+}
+
+/* CiA 301: while SYNC has a period its counter can not be changed. */
+static void test_the_counter_of_sync_is_told_while_sync_has_no_period(void)
+{
+    run_start();
+    const struct fake_written *told = fake_nodes_told(&nodes, 1, SDO_OBJECT(0x1019, 0));
+    TEST_ASSERT_EQUAL_HEX32(SDO_OBJECT(0x1006, 0), told[-1].object);
+    TEST_ASSERT_EQUAL_UINT32(0, told[-1].value);
+    assert_told(1, SDO_OBJECT(0x1006, 0), 1000);
+}
+
+static void test_a_heartbeat_comes_once_a_cycle_at_most_and_everybody_is_told_so(void)
+{
+    config.cycle_us = 4000;
+    config.heartbeat_ms = 3;
+    run_start();
+    assert_told(1, SDO_OBJECT(0x1017, 0), 4);
+    assert_told(1, SDO_OBJECT(0x1016, 1), 127u << 16 | 12);
+    TEST_ASSERT_EQUAL_UINT32(1, drives.heartbeat_cycles);
+}
+
+/* 7 ms are 1.75 cycles of 4 ms: three periods are 21 ms, not 12. */
+static void test_three_heartbeats_are_missed_in_no_less_than_their_time(void)
+{
+    config.cycle_us = 4000;
+    config.heartbeat_ms = 7;
+    takt_drives_init(&drives, &config);
+    TEST_ASSERT_TRUE(4 * drives.heartbeat_age_max_cycles >= 21);
+}
+
 static const struct drives_rates megabit = {1000000, 0};
 
 /*
@@ -345,6 +419,9 @@ static void test_the_load_is_that_of_the_worst_stuffed_frames(void)
         TEST_ASSERT_TRUE(load.percent == bits[count - 1] / 10.0);
     }
     TEST_ASSERT_FALSE(takt_drives_predict_load(6, &megabit, 1000, &load));
+    const struct drives_traffic often = {.count = 3, .rates = megabit, .heartbeat_ms = 2};
+    TEST_ASSERT_TRUE(takt_drives_predict_whole_load(&often, 1000, &load));
+    TEST_ASSERT_EQUAL_UINT32(bits[2] + 65, load.bits); /* of four nodes in two cycles */
     TEST_ASSERT_TRUE(takt_drives_predict_load(6, &megabit, 2000, &load));
 }
 
@@ -368,6 +445,13 @@ int main(void)
     RUN_TEST(test_nothing_is_given_up_by_drives_that_take_everything);
     RUN_TEST(test_an_optional_object_that_is_refused_for_any_reason_is_given_up);
     RUN_TEST(test_axes_of_drives_without_dummies_have_frames_of_their_own);
+    RUN_TEST(test_a_start_that_the_bus_refuses_ends_after_its_time);
+    RUN_TEST(test_a_start_that_gets_lost_is_sent_again);
+    RUN_TEST(test_a_lost_question_for_the_mode_is_asked_again);
+    RUN_TEST(test_a_drive_that_falls_silent_while_it_is_enabled_is_told_as_silent);
+    RUN_TEST(test_the_counter_of_sync_is_told_while_sync_has_no_period);
+    RUN_TEST(test_a_heartbeat_comes_once_a_cycle_at_most_and_everybody_is_told_so);
+    RUN_TEST(test_three_heartbeats_are_missed_in_no_less_than_their_time);
     RUN_TEST(test_the_load_is_that_of_the_frames_that_were_found);
     RUN_TEST(test_reports_that_do_not_come_by_sync_come_by_a_timer_of_the_cycle);
     RUN_TEST(test_a_drive_that_boots_slowly_is_reset_once);

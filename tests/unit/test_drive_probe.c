@@ -86,6 +86,23 @@ static void test_a_drive_that_does_not_answer_is_gone_past(void)
     TEST_ASSERT_TRUE(latched.at[AXIS_X] == 7);
     TEST_ASSERT_TRUE(latched.at[AXIS_Z] == 0.125);
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_HEX32(1u << DRIVES_NO_TOUCH_PROBE, takt_drives_get_given_up(&drives, AXIS_X) &
+                                                             1u << DRIVES_NO_TOUCH_PROBE);
+}
+
+static void test_what_gets_lost_is_asked_and_told_again(void)
+{
+    for (unsigned i = 0; i < 3; i++) {
+        setUp();
+        config.sdo_timeout_cycles = 5;
+        start();
+        show(1, 1 | 2, 0x60BA, 125);
+        if (i == 0)
+            set_rule((struct fake_rule){.object = SDO_OBJECT(0x60B8, 0), .silent = 2});
+        else
+            nodes.rule[i - 1].silent = 2;
+        TEST_ASSERT_TRUE(probe(false).at[AXIS_X] == 0.125);
+    }
 }
 
 static void test_what_was_latched_before_is_forgotten(void)
@@ -112,6 +129,7 @@ int main(void)
     RUN_TEST(test_the_loss_of_contact_is_the_falling_edge);
     RUN_TEST(test_a_drive_that_refuses_is_told_and_not_asked_again);
     RUN_TEST(test_a_drive_that_does_not_answer_is_gone_past);
+    RUN_TEST(test_what_gets_lost_is_asked_and_told_again);
     RUN_TEST(test_what_was_latched_before_is_forgotten);
     RUN_TEST(test_a_fault_ends_it);
     return UNITY_END();

@@ -22,7 +22,8 @@ static unsigned quick_stops(unsigned node, enum cia402_state state)
     for (unsigned i = 0; i < 30; i++) {
         put_all(state, 0);
         cycle();
-        count += find_sent(0x200 + node) != NULL;
+        const struct can_frame *frame = find_sent(0x200 + node);
+        count += frame != NULL && frame->data[0] == CIA402_QUICK_STOP_NOW;
     }
     return count;
 }
@@ -34,6 +35,30 @@ static void test_a_quick_stop_is_sent_again_until_the_statusword_shows_it(void)
     cycle();
     TEST_ASSERT_TRUE(quick_stops(1, CIA402_ENABLED) >= 9);
     TEST_ASSERT_EQUAL_UINT(0, quick_stops(1, CIA402_QUICK_STOP));
+}
+
+static unsigned switched_off(unsigned cycles)
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < cycles; i++) {
+        put_all(CIA402_QUICK_STOP, 0);
+        cycle();
+        const struct can_frame *frame = find_sent(0x201);
+        count += frame != NULL && frame->data[0] == CIA402_DISABLE_VOLTAGE;
+    }
+    return count;
+}
+
+/* 605A: 5 ... 8 keep the torque. It has all of its time to brake, for its position may be stuck. */
+static void test_a_drive_that_stays_in_quick_stop_is_switched_off_after_its_time(void)
+{
+    enable_at(0);
+    put_status(3, CIA402_FAULT, 0);
+    cycle();
+    TEST_ASSERT_EQUAL_UINT(0, switched_off(100));
+    TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, drives_get_state(&drives));
+    TEST_ASSERT_TRUE(switched_off(20) >= 2); /* one may get lost */
+    TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
 }
 
 static void test_the_drives_count_as_faulted_when_all_are_switched_off_and_stand(void)
@@ -248,6 +273,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_quick_stop_that_the_bus_refuses_is_sent_again);
     RUN_TEST(test_a_quick_stop_is_sent_again_until_the_statusword_shows_it);
+    RUN_TEST(test_a_drive_that_stays_in_quick_stop_is_switched_off_after_its_time);
     RUN_TEST(test_the_drives_count_as_faulted_when_all_are_switched_off_and_stand);
     RUN_TEST(test_a_drive_that_stands_is_not_switched_off_while_its_state_has_torque);
     RUN_TEST(test_a_drive_that_never_stands_is_given_up_after_the_timeout);

@@ -24,7 +24,8 @@ static struct spindle_feedback feedback;
 static unsigned left; /* cycles until the answer; 0: there is no request */
 static bool good, is_cut;
 static uint16_t answer[REGISTERS_MAX];
-static unsigned requests, commands;
+static unsigned requests, commands, resets;
+static bool refuses_reset;
 
 static void begin(enum modbus_exception exception)
 {
@@ -52,6 +53,11 @@ static void line_write(void *context, uint16_t address, uint16_t count, const ui
     commands++;
     for (unsigned i = 0; i < count; i++)
         modbus_write16(data + (size_t)2 * i, word[i]);
+    resets += address == VFD_CONTROL;
+    if (refuses_reset && address == VFD_CONTROL) {
+        begin(MODBUS_BUSY);
+        return;
+    }
     begin(is_cut ? MODBUS_BUSY : map.write(map.context, MODBUS_HOLDINGS, address, count, data));
 }
 
@@ -87,7 +93,8 @@ void setUp(void)
     takt_vfd_init(&vfd, &config);
     left = 0;
     is_cut = false;
-    requests = commands = 0;
+    requests = commands = resets = 0;
+    refuses_reset = false;
     memset(&feedback, 0, sizeof feedback);
 }
 
@@ -166,6 +173,20 @@ static void test_a_trip_is_told_and_reset_when_acknowledged(void)
     TEST_ASSERT_TRUE(feedback.at_speed);
 }
 
+/* A trip that stays: the register of the reset answers with an exception, all others as ever. */
+static void test_a_refused_reset_silences_neither_reports_nor_stop(void)
+{
+    run_for(3, 3000);
+    refuses_reset = true;
+    takt_vfd_reset(&vfd);
+    takt_vfd_stop(&vfd);
+    run_for(1, 0);
+    TEST_ASSERT_EQUAL_HEX16(VFD_STOP, registers.command);
+    TEST_ASSERT_TRUE(takt_vfd_is_stopped(&vfd));
+    TEST_ASSERT_FALSE(feedback.silent);
+    TEST_ASSERT_TRUE(resets >= 1 && resets <= 3);
+}
+
 static void test_a_line_that_is_cut_is_told_and_mended(void)
 {
     run_for(3, 12000);
@@ -209,6 +230,7 @@ int main(void)
     RUN_TEST(test_a_command_that_stays_is_written_once);
     RUN_TEST(test_the_load_is_the_converters_torque);
     RUN_TEST(test_a_trip_is_told_and_reset_when_acknowledged);
+    RUN_TEST(test_a_refused_reset_silences_neither_reports_nor_stop);
     RUN_TEST(test_a_line_that_is_cut_is_told_and_mended);
     RUN_TEST(test_a_converter_that_comes_back_gets_its_command_again);
     RUN_TEST(test_a_converter_that_never_answers_is_silent);
