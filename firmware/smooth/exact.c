@@ -374,10 +374,10 @@ static double straight_end(const struct route *r, uint32_t element, double at_mm
 }
 
 /*
- * Must the axes be on it before they go along it? Of an arc so that it is one; where rotary axes
+ * Must the axes be on it before they go along it? Of a curve so that it is one; where rotary axes
  * move, because a feed counts the way of the linear ones alone.
  */
-static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
+static bool begins_on_route(const struct route *r, uint32_t element, bool along)
 {
     float d[AXIS_COUNT];
     bool turns = false;
@@ -386,7 +386,7 @@ static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
     for (unsigned i = 0; i < r->slots.count; i++) {
         turns = turns || (r->slots.axis[i] >= AXIS_LINEAR_COUNT && d[i] != 0.0f);
     }
-    return arc || turns;
+    return along || turns;
 }
 
 /* To a place of an element: as it is programmed, or in a line. False: the axes are there. */
@@ -398,15 +398,39 @@ static bool go_to(const struct route *r, uint32_t element, double to_mm, const s
     return takt_move_curve(move, start, curve);
 }
 
+/*
+ * As it is programmed to its end, or to that of the piece that plan divides it into (plan/path.c):
+ * the place to which that goes. No farther than it is: it is no such motion.
+ */
+static double go_along(const struct route *r, uint32_t element, double at_mm,
+                       const struct point *start, double p[], struct move *move,
+                       struct curve *curve)
+{
+    const double to_mm = route_end_of(r, element);
+
+    if (!go_to(r, element, to_mm, start, p, move, curve)) {
+        return at_mm;
+    }
+    const struct curve whole = *curve;
+    const double end_mm = takt_curve_piece_end(&whole, 0.0);
+
+    if (end_mm >= whole.length_mm) {
+        return to_mm;
+    }
+    takt_curve_cut(&whole, 0.0, end_mm, curve);
+    takt_route_gather(r, &curve->end, p);
+    return at_mm + (to_mm - at_mm) * end_mm / whole.length_mm;
+}
+
 bool takt_exact_next(struct window *w, const struct route *r, struct move *move,
                      struct curve *curve)
 {
     const uint32_t element = w->element[0];
     const double at_mm = w->at_mm[0];
-    const bool arc = takt_route_arc(r, element, at_mm, move);
+    const bool along = takt_route_along(r, element, at_mm, move);
     const enum move_kind kind = move->kind;
     const enum move_kind line = kind == MOVE_RAPID ? MOVE_RAPID : MOVE_FEED;
-    const bool beside = begins_on_route(r, element, arc);
+    const bool beside = begins_on_route(r, element, along);
     double to_mm = beside ? at_mm : straight_end(r, element, at_mm);
     struct point start;
     double p[AXIS_COUNT];
@@ -416,9 +440,14 @@ bool takt_exact_next(struct window *w, const struct route *r, struct move *move,
     move->kind = line;
     bool goes = go_to(r, element, to_mm, &start, p, move, curve);
 
+    if (!goes && along) {
+        move->kind = kind;
+        to_mm = go_along(r, element, at_mm, &start, p, move, curve);
+        goes = to_mm > at_mm;
+    }
     if (!goes && beside) {
-        to_mm = arc ? route_end_of(r, element) : straight_end(r, element, at_mm);
-        move->kind = arc ? kind : line;
+        to_mm = straight_end(r, element, at_mm);
+        move->kind = line;
         goes = go_to(r, element, to_mm, &start, p, move, curve);
     }
     takt_window_stand(w, r, p, to_mm, element);

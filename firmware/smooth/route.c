@@ -78,7 +78,7 @@ float takt_route_time(const struct route *r, uint32_t element, double from_mm, d
     return time;
 }
 
-static void gather(const struct route *r, const struct point *p, double by_slot[])
+void takt_route_gather(const struct route *r, const struct point *p, double by_slot[])
 {
     for (unsigned i = 0; i < r->slots.count; i++) {
         by_slot[i] = p->at[r->slots.axis[i]];
@@ -187,8 +187,9 @@ void takt_route_push(struct route *r, const struct move *move, uint32_t number,
 
     TAKT_ASSERT(takt_route_has_room(r));
     TAKT_ASSERT(curve->length_mm > 0.0 && per_mm > 0.0F);
-    gather(r, &curve->start, &r->start[(size_t)route_slot(r, r->count) * r->slots.count]);
-    gather(r, &curve->end, r->end);
+    takt_route_gather(r, &curve->start,
+                      &r->start[(size_t)route_slot(r, r->count) * r->slots.count]);
+    takt_route_gather(r, &curve->end, r->end);
     memset(e, 0, sizeof(*e));
     e->start_mm = start_mm;
     r->end_mm = start_mm + curve->length_mm * (double)per_mm;
@@ -298,7 +299,7 @@ void takt_route_place(const struct route *r, uint32_t index, double at_mm, doubl
 
         takt_route_curve(r, index, &c);
         takt_curve_point(&c, curved_place(r, index, &c, at_mm), &q);
-        gather(r, &q, p);
+        takt_route_gather(r, &q, p);
         return;
     }
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -312,22 +313,68 @@ void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, doubl
     takt_route_place(r, *hint, at_mm, p);
 }
 
-bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move)
+/* left: the part of it that is. */
+static void tell_arc(const struct curve_arc *arc, double left, struct move *move)
 {
-    const struct route_element *e = route_element(r, index);
-
-    takt_route_move(r, index, move);
-    if (!e->curved || curved_at(r, e)->kind != CURVE_ARC) {
-        return false;
-    }
-    const struct curve_arc *arc = &curved_at(r, e)->arc;
-    const double left = (route_end_of(r, index) - at_mm) / (route_end_of(r, index) - e->start_mm);
     const double turns = maths_abs(arc->sweep_rad) * left / (2.0 * MATHS_PI);
 
     move->centre_mm[0] = arc->centre_mm[0];
     move->centre_mm[1] = arc->centre_mm[1];
     move->turns = 1U + (uint32_t)(turns * WHOLE_TURNS);
-    return true;
+}
+
+static void tell_involute(const struct curve_involute *involute, struct move *move)
+{
+    move->centre_mm[0] = involute->centre_mm[0];
+    move->centre_mm[1] = involute->centre_mm[1];
+    move->base_radius_mm = involute->radius_mm;
+}
+
+/* Its course: direction and curvature at both ends. */
+static void tell_spline(const struct curve *c, struct move *move)
+{
+    const unsigned first = c->quintic.first;
+    const unsigned second = c->quintic.second;
+
+    for (unsigned i = 0; i < 2; i++) {
+        const double s_mm = i == 0 ? 0.0 : c->length_mm;
+        struct point t;
+        struct point k;
+
+        takt_curve_tangent(c, s_mm, &t);
+        takt_curve_curvature(c, s_mm, &k);
+        move->heading_rad[i] = takt_maths_atan2(t.at[second], t.at[first]);
+        move->curvature_1_mm[i] = t.at[first] * k.at[second] - t.at[second] * k.at[first];
+    }
+    move->spline_mm = c->length_mm;
+}
+
+bool takt_route_along(const struct route *r, uint32_t index, double at_mm, struct move *move)
+{
+    const struct route_element *e = route_element(r, index);
+    const double end_mm = route_end_of(r, index);
+    struct curve c;
+
+    takt_route_move(r, index, move);
+    if (!e->curved) {
+        return false;
+    }
+    takt_route_curve(r, index, &c);
+    switch (c.kind) {
+    case CURVE_ARC:
+        tell_arc(&c.arc, (end_mm - at_mm) / (end_mm - e->start_mm), move);
+        return true;
+    case CURVE_INVOLUTE: /* at a cusp the axes must stand */
+        tell_involute(&c.involute, move);
+        return !c.involute.cusp_start && !c.involute.cusp_end;
+    case CURVE_QUINTIC: /* a part of it has another course */
+        tell_spline(&c, move);
+        return at_mm <= e->start_mm;
+    case CURVE_LINE:
+    case CURVE_SPLINE:
+        break;
+    }
+    return false;
 }
 
 static void curved_direction(const struct route *r, uint32_t index, double at_mm, float direction[])

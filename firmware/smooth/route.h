@@ -185,11 +185,12 @@ void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, doubl
 /* On an element; a place outside is its nearer end. */
 void takt_route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
 void takt_route_scatter(const struct route *r, const double by_slot[], struct point *p);
+void takt_route_gather(const struct route *r, const struct point *p, double by_slot[]);
 /*
- * The motion of an element, if it is an arc with its centre and the turns from a place on; false:
- * it is none.
+ * The motion of an element, as it is programmed, from a place on; false: it is not curved, or is no
+ * such motion from there on: lines go along it.
  */
-bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
+bool takt_route_along(const struct route *r, uint32_t index, double at_mm, struct move *move);
 /* Second derivative by the route, weighted; 0 on lines. Returns its size, 1/mm. */
 float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
 /*

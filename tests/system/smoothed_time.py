@@ -257,6 +257,16 @@ def on_long_cycles_the_path_is_timed_with_its_chords():
         t.check(time_s <= part * exact_s, f"no slower than the exact path: {name}", time_s, exact_s)
 
 
+def curves_are_handed_on_as_they_are():
+    """Splines and involutes of a path that is taken as it is programmed were gone along in lines, with a stop at most of their corners."""
+    nurbs = "G5.2 X10 Y0 P1\nX10 Y10\nX0 Y10\nX0 Y20\nX20 Y20\nG5.3\n"
+    for name, curve in (("quadratic", "G5.1 X10 Y10 I5 J0\n"), ("cubic", "G5 I0 J10 P0 Q-10 X20 Y20\n"), ("NURBS", nurbs)):
+        for feed, tolerance in ((300, 0.1), (600, 0.1), (600, 1.0), (1500, 0.05)):
+            program = f"G64 P{tolerance}\nG1 X0 Y0 F{feed}\n{curve}M2\n"
+            exact_s, time_s = (time_of(program, hunt_programs.built_in(), *arguments) for arguments in (("--exact-path",), ()))
+            t.check(time_s <= 1.06 * exact_s, f"{name} spline, F{feed} P{tolerance}: no slower than the exact path", time_s, exact_s)
+
+
 def what_an_override_may_ask_for_stops_nobody():
     """Junctions that are fast enough for the programmed feed, and not for 120 % of it, are not landed on."""
     program = lines(bends_slowly(), 0.0021)
@@ -298,6 +308,7 @@ bends_leave_room_for_chords()
 rapids_choose_nothing_for_what_follows()
 as_cam_systems_write()
 on_long_cycles_the_path_is_timed_with_its_chords()
+curves_are_handed_on_as_they_are()
 what_an_override_may_ask_for_stops_nobody()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()
