@@ -178,7 +178,7 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
 
     TAKT_ASSERT(to_mm > p->split_mm && to_mm <= p->length_mm);
     takt_block_set_motion(b, &p->split, curve, &p->limits);
-    b->number = p->motions;
+    b->number = p->split_number;
     b->continues = to_mm < p->length_mm;
     append_joined(p, b);
     p->split_mm = to_mm;
@@ -206,10 +206,12 @@ static void push_pieces(struct path *p, const struct curve *whole)
     }
 }
 
-static void push_motion(struct path *p, const struct move *move, const struct curve *curve)
+static void push_motion(struct path *p, const struct move *move, uint32_t number,
+                        const struct curve *curve)
 {
     TAKT_ASSERT(!is_splitting(p));
     p->split = *move;
+    p->split_number = number;
     p->from = p->end;
     p->length_mm = curve->length_mm;
     p->split_mm = 0.0;
@@ -347,7 +349,7 @@ static void push_move(struct path *p, const struct move *move)
             takt_smooth_push(&p->smooth, move, p->motions, &curve);
             push_smooth_pieces(p);
         } else {
-            push_motion(p, move, &curve);
+            push_motion(p, move, p->motions, &curve);
         }
     }
     if (move->kind == MOVE_PROBE || move->kind == MOVE_TAP) {
@@ -414,12 +416,13 @@ static void finish_chain(struct path *p)
         return;
     }
     const struct move move = p->smooth.merge.move;
+    const uint32_t number = p->smooth.merge.number; /* motions without length may have followed */
     const struct curve line = p->smooth.merge.curve;
 
     takt_smooth_end(&p->smooth);
     close_newest(p);
     p->end = line.start;
-    push_motion(p, &move, &line);
+    push_motion(p, &move, number, &line);
     close_newest(p);
 }
 

@@ -62,11 +62,12 @@ struct path {
     bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
     bool smoothing; /* the newest block is a piece of a chain that goes on */
     double unit_mm; /* path for a second of nominal time of a smoothed curve */
-    struct move split; /* a motion of several pieces that have not all found room yet, */
-    struct point from; /* where it starts, */
-    double length_mm;  /* its length */
-    double split_mm;   /* and how much of that is in the ring */
-    uint64_t position; /* likewise, on the path */
+    struct move split;     /* a motion of several pieces that have not all found room yet, */
+    uint32_t split_number; /* its number, */
+    struct point from;     /* where it starts, */
+    double length_mm;      /* its length */
+    double split_mm;       /* and how much of that is in the ring */
+    uint64_t position;     /* likewise, on the path */
     struct block
         edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
     struct jerk_budget_block open[JERK_BUDGET_BLOCKS_MAX]; /* those that are not closed */

@@ -161,6 +161,19 @@ static void test_one_line_within_a_tolerance_is_planned_like_an_exact_one(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10.0, takt_path_length(&path, 1));
 }
 
+/* The motions without length are known before the line is pushed, and counted. */
+static void test_one_line_has_its_number_whatever_has_no_length_behind_it(void)
+{
+    path.spare = 1;
+    push_blend(20.0, 0.0);
+    push_blend(20.0, 0.0);
+    push_blend(20.0, 0.0);
+    takt_path_finish(&path);
+    TEST_ASSERT_EQUAL(1, path.pushed);
+    TEST_ASSERT_EQUAL_UINT32(1, path_read(&path, 0)->number);
+    TEST_ASSERT_EQUAL_UINT32(3, path.motions);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -173,5 +186,6 @@ int main(void)
     RUN_TEST(test_a_restart_forgets_all_blocks);
     RUN_TEST(test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it);
     RUN_TEST(test_one_line_within_a_tolerance_is_planned_like_an_exact_one);
+    RUN_TEST(test_one_line_has_its_number_whatever_has_no_length_behind_it);
     return UNITY_END();
 }
