@@ -200,6 +200,8 @@ static uint32_t check_profile_write(const struct servo *drive, const struct obje
 static uint32_t check_number(const struct servo *drive, const struct object_row *row, uint32_t raw)
 {
     int64_t value = takt_object_type_value((enum object_type)row->type, raw);
+    if (row->index == 0x1003) /* 0 clears the history; what else is written has no meaning */
+        return raw == 0 ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     if (row->flags & OBJECT_LIMITED && value < row->min)
         return SDO_ABORT_TOO_LOW;
     if (row->flags & OBJECT_LIMITED && value > row->max)

@@ -133,7 +133,7 @@ static void test_errors_are_remembered_the_newest_first(void)
     TEST_ASSERT_EQUAL_HEX32(0x8611, lone_read(&lone, 0x1003, 1));
     TEST_ASSERT_EQUAL_HEX32(0x8210, lone_read(&lone, 0x1003, 2));
     TEST_ASSERT_EQUAL_HEX32(0x21, lone_read(&lone, 0x1001, 0));
-    TEST_ASSERT_EQUAL_HEX32(0x06090031, lone_write(&lone, 0x1003, 0, 1, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x1003, 0, 1, 1));
     TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1003, 0, 1, 0));
     TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x1003, 0));
 }
