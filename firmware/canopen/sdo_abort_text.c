@@ -19,7 +19,7 @@ static const struct {
     {SDO_ABORT_NO_OBJECT, "object does not exist"},
     {SDO_ABORT_NOT_MAPPABLE, "object cannot be mapped into the PDO"},
     {SDO_ABORT_PDO_LENGTH, "mapped objects exceed the length of the PDO"},
-    {0x06040043, "parameters do not go together"},
+    {SDO_ABORT_PARAMETERS, "parameters do not go together"},
     {0x06040047, "internal incompatibility in the device"},
     {SDO_ABORT_HARDWARE, "hardware error"},
     {SDO_ABORT_LENGTH, "length of the value does not match"},

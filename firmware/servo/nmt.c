@@ -34,6 +34,26 @@ void takt_servo_restart_consumer(struct servo *drive, unsigned i)
     takt_servo_look_soon(drive);
 }
 
+/* The node that an entry of 1016 watches; 0: none. */
+static uint32_t watched_node(uint32_t entry)
+{
+    return (entry & 0xFFFF) != 0 ? entry >> 16 : 0;
+}
+
+/* No node is watched by two entries: which of the times would count? */
+uint32_t takt_servo_check_consumer(const struct servo *drive, const struct object_row *row,
+                                   uint32_t value)
+{
+    const uint32_t node = watched_node(value);
+    if (value >> 16 > NODE_MAX)
+        return SDO_ABORT_VALUE;
+    for (unsigned i = 0; i < DRIVE_CONSUMERS && node != 0; i++)
+        if (i + 1 != row->sub &&
+            watched_node(drive->objects.communication.consumer_heartbeat[i]) == node)
+            return SDO_ABORT_PARAMETERS;
+    return SDO_ABORT_NONE;
+}
+
 static void restart_communication(struct servo *drive)
 {
     drive->communication_error = 0;

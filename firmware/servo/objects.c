@@ -112,11 +112,6 @@ static uint32_t check_emcy_id(const struct servo *drive, uint32_t value)
     return !(old >> 31) && !(value >> 31) && value != old ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
 }
 
-static uint32_t check_consumer(uint32_t value)
-{
-    return value >> 16 > NODE_MAX ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
-}
-
 /* SYNC's counter must not change while SYNC has a period. */
 static uint32_t check_overflow(const struct servo *drive, uint32_t value)
 {
@@ -152,7 +147,7 @@ static uint32_t check_communication_write(const struct servo *drive, const struc
     case 0x1014:
         return check_emcy_id(drive, value);
     case 0x1016:
-        return check_consumer(value);
+        return takt_servo_check_consumer(drive, row, value);
     case 0x1019:
         return check_overflow(drive, value);
     default:

@@ -51,6 +51,9 @@ void takt_servo_look_soon(struct servo *drive);
 void takt_servo_send_heartbeat(struct servo *drive, enum nmt_state state);
 void takt_servo_restart_heartbeat(struct servo *drive);
 void takt_servo_restart_consumer(struct servo *drive, unsigned i);
+/* Object 1016: may it get this value now? */
+uint32_t takt_servo_check_consumer(const struct servo *drive, const struct object_row *row,
+                                   uint32_t value);
 /* Frames of NMT, another node's heartbeat, and the question of a master that guards. */
 void takt_servo_take_nmt(struct servo *drive, const struct can_frame *frame);
 void takt_servo_take_heartbeat(struct servo *drive, const struct can_frame *frame);

@@ -63,6 +63,20 @@ static void test_a_heartbeat_that_stays_out_stops_the_drive_and_tells_8130(void)
     TEST_ASSERT_EQUAL_HEX16(0x0000, emcy.code);
 }
 
+static void test_no_node_is_watched_by_two_entries_of_1016(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1016, 1, 4, 127u << 16 | 50));
+    TEST_ASSERT_EQUAL_HEX32(0x06040043, lone_write(&lone, 0x1016, 2, 4, 127u << 16 | 80));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_read(&lone, 0x1016, 2));
+    /* A node without a time is not watched, nor is node 0; an entry may be written again. */
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1016, 2, 4, 127u << 16));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1016, 2, 4, 126u << 16 | 80));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1016, 2, 4, 126u << 16 | 90));
+    TEST_ASSERT_EQUAL_HEX32(0x06040043, lone_write(&lone, 0x1016, 1, 4, 126u << 16 | 50));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1016, 1, 4, 80));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1016, 2, 4, 80));
+}
+
 static void test_1029_says_what_becomes_of_the_node(void)
 {
     static const struct {
@@ -333,6 +347,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_heartbeat_is_produced_as_often_as_1017_says_and_shows_the_state);
     RUN_TEST(test_a_heartbeat_that_stays_out_stops_the_drive_and_tells_8130);
+    RUN_TEST(test_no_node_is_watched_by_two_entries_of_1016);
     RUN_TEST(test_1029_says_what_becomes_of_the_node);
     RUN_TEST(test_a_sync_that_stays_out_is_8700);
     RUN_TEST(test_6007_says_what_a_lost_connection_does_to_the_motor);
