@@ -88,19 +88,26 @@ static void behave(struct servo *drive)
     takt_servo_tell(drive, DRIVE_EVENT_NMT, (uint32_t)drive->nmt, 0);
 }
 
+void takt_servo_forget_communication_error(struct servo *drive)
+{
+    struct drive_process *p = &drive->objects.process;
+    drive->communication_error = EMCY_NONE;
+    p->error_register &= (uint8_t)~EMCY_REGISTER_COMMUNICATION;
+    if (p->error_code == EMCY_NONE)
+        p->error_register = 0;
+}
+
 void takt_servo_set_communication_error(struct servo *drive, uint16_t code)
 {
     uint8_t *error_register = &drive->objects.process.error_register;
     if (code == drive->communication_error)
         return;
-    drive->communication_error = code;
     if (code == EMCY_NONE) {
-        *error_register &= (uint8_t)~EMCY_REGISTER_COMMUNICATION;
-        if (drive->objects.process.error_code == EMCY_NONE)
-            *error_register = 0;
+        takt_servo_forget_communication_error(drive);
         takt_servo_send_emergency(drive, EMCY_NONE, *error_register);
         return;
     }
+    drive->communication_error = code;
     *error_register |= EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION;
     takt_servo_send_emergency(drive, code, *error_register);
     behave(drive);

@@ -56,7 +56,7 @@ uint32_t takt_servo_check_consumer(const struct servo *drive, const struct objec
 
 static void restart_communication(struct servo *drive)
 {
-    drive->communication_error = 0;
+    takt_servo_forget_communication_error(drive);
     drive->emcy_count = 0;
     drive->emcy_ns = 0;
     drive->sync_lost_ns = drive->guard_lost_ns = DRIVE_NEVER;

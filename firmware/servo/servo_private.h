@@ -88,6 +88,8 @@ struct time_stamp takt_servo_time_of_day(const struct servo *drive);
 
 /* An error of the communication is there (8130, 8700), or all are gone (0). */
 void takt_servo_set_communication_error(struct servo *drive, uint16_t code);
+/* They are gone with the communication itself: nobody is told. */
+void takt_servo_forget_communication_error(struct servo *drive);
 void takt_servo_send_waiting_emergencies(struct servo *drive);
 void takt_servo_clear_history(struct servo *drive);
 

@@ -111,6 +111,32 @@ static void test_a_sync_that_stays_out_is_8700(void)
     TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, virtual_drive_get_state(&lone.drive));
 }
 
+static void lose_sync(void)
+{
+    (void)lone_write(&lone, 0x1006, 0, 4, 1000);
+    lone_enable(&lone, 8);
+    lone_sync(&lone);
+    lone_step(&lone, 4);
+    TEST_ASSERT_EQUAL_HEX8(0x11, lone_read(&lone, 0x1001, 0));
+}
+
+static void test_a_reset_of_the_communication_ends_its_error_in_1001_without_an_emergency(void)
+{
+    lose_sync();
+    lone_nmt(&lone, NMT_RESET_COMMUNICATION);
+    TEST_ASSERT_EQUAL_UINT(0, lone_count_sent(&lone, 0x085));
+    TEST_ASSERT_EQUAL_HEX8(0x00, lone_read(&lone, 0x1001, 0));
+}
+
+static void test_a_fault_of_the_drive_stays_in_1001_when_the_communication_is_reset(void)
+{
+    lose_sync();
+    takt_servo_fail(&lone.drive.servo, 0x3210, EMCY_REGISTER_GENERIC | 0x04);
+    TEST_ASSERT_EQUAL_HEX8(0x15, lone_read(&lone, 0x1001, 0));
+    lone_nmt(&lone, NMT_RESET_COMMUNICATION);
+    TEST_ASSERT_EQUAL_HEX8(0x05, lone_read(&lone, 0x1001, 0));
+}
+
 static void test_6007_says_what_a_lost_connection_does_to_the_motor(void)
 {
     static const enum cia402_state states[] = {CIA402_ENABLED, CIA402_FAULT_REACTION,
@@ -350,6 +376,8 @@ int main(void)
     RUN_TEST(test_no_node_is_watched_by_two_entries_of_1016);
     RUN_TEST(test_1029_says_what_becomes_of_the_node);
     RUN_TEST(test_a_sync_that_stays_out_is_8700);
+    RUN_TEST(test_a_reset_of_the_communication_ends_its_error_in_1001_without_an_emergency);
+    RUN_TEST(test_a_fault_of_the_drive_stays_in_1001_when_the_communication_is_reset);
     RUN_TEST(test_6007_says_what_a_lost_connection_does_to_the_motor);
     RUN_TEST(test_errors_are_remembered_the_newest_first);
     RUN_TEST(test_emergencies_keep_their_inhibit_time_and_none_is_lost);
