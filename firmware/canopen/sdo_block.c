@@ -170,7 +170,8 @@ static void accept(struct sdo_server *server, const struct can_frame *frame)
     uint8_t command = frame->data[0];
     server->object = takt_sdo_read_object(frame);
     server->state = SDO_SERVER_IDLE;
-    uint32_t code = server->owner.may_write(server->owner.context, server->object);
+    size_t size = 0;
+    uint32_t code = server->owner.may_write(server->owner.context, server->object, &size);
     server->expected = command & BLOCK_SIZE_GIVEN ? little_endian_read32(frame->data + 4) : 0;
     if (code == SDO_ABORT_NONE && server->expected > SDO_SERVER_WRITE_MAX)
         code = SDO_ABORT_TOO_LONG;

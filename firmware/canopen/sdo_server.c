@@ -78,16 +78,24 @@ bool takt_sdo_server_deliver(struct sdo_server *server, const uint8_t *bytes, si
     return code == SDO_ABORT_NONE;
 }
 
+/* Of the four bytes without a size, as many count as the object has (CiA 301, 7.2.4.3.3). */
+static size_t expedited_length(uint8_t command, size_t object_size)
+{
+    if (command & SDO_SIZE_GIVEN)
+        return SDO_EXPEDITED_MAX - sdo_unused_expedited(command);
+    return object_size >= 1 && object_size < SDO_EXPEDITED_MAX ? object_size : SDO_EXPEDITED_MAX;
+}
+
 static void take_download(struct sdo_server *server, const struct can_frame *frame)
 {
     uint8_t command = frame->data[0];
-    uint32_t code = server->owner.may_write(server->owner.context, server->object);
+    size_t size = 0;
+    uint32_t code = server->owner.may_write(server->owner.context, server->object, &size);
     if (code != SDO_ABORT_NONE) {
         takt_sdo_server_abort(server, code);
     } else if (command & SDO_EXPEDITED) {
-        unsigned unused = command & SDO_SIZE_GIVEN ? sdo_unused_expedited(command) : 0;
         server->state = SDO_SERVER_IDLE;
-        if (takt_sdo_server_deliver(server, frame->data + 4, SDO_EXPEDITED_MAX - unused))
+        if (takt_sdo_server_deliver(server, frame->data + 4, expedited_length(command, size)))
             takt_sdo_server_answer(server, SDO_RESPONSE_DOWNLOAD, 0);
     } else {
         server->expected = command & SDO_SIZE_GIVEN ? little_endian_read32(frame->data + 4) : 0;

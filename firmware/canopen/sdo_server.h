@@ -32,8 +32,11 @@ struct sdo_server_owner {
      */
     uint32_t (*read)(void *context, uint32_t object, uint8_t number[4], const uint8_t **bytes,
                      size_t *length);
-    /* May this object be written? Asked before the data come. */
-    uint32_t (*may_write)(void *context, uint32_t object);
+    /*
+     * May this object be written? Asked before the data come. *size: the bytes of its value; 0: it
+     * may have any length.
+     */
+    uint32_t (*may_write)(void *context, uint32_t object, size_t *size);
     uint32_t (*write)(void *context, uint32_t object, const uint8_t *bytes, size_t length);
     /* False: no room now; the server comes back with it. */
     bool (*send)(void *context, const struct can_frame *frame);

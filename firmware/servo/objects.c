@@ -423,10 +423,12 @@ static uint32_t may_write(const struct servo *drive, uint32_t object, const stru
     return code;
 }
 
-uint32_t takt_servo_may_write_sdo(void *drive, uint32_t object)
+uint32_t takt_servo_may_write_sdo(void *drive, uint32_t object, size_t *size)
 {
     const struct object_row *row;
-    return tell_abort(drive, object, may_write(drive, object, &row));
+    uint32_t code = may_write(drive, object, &row);
+    *size = code == SDO_ABORT_NONE ? takt_object_type_bytes((enum object_type)row->type) : 0;
+    return tell_abort(drive, object, code);
 }
 
 static uint32_t write_object(struct servo *drive, uint32_t object, const uint8_t *bytes,

@@ -141,7 +141,7 @@ void takt_servo_apply_touches(struct servo *drive, unsigned touches);
 void takt_servo_restore(struct servo *drive, uint16_t last);
 uint32_t takt_servo_read_sdo(void *drive, uint32_t object, uint8_t number[4], const uint8_t **bytes,
                              size_t *length);
-uint32_t takt_servo_may_write_sdo(void *drive, uint32_t object);
+uint32_t takt_servo_may_write_sdo(void *drive, uint32_t object, size_t *size);
 uint32_t takt_servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length);
 
 /* ---- settings.c ---- */

@@ -45,9 +45,10 @@ static inline uint32_t owner_read(void *context, uint32_t object, uint8_t number
     return SDO_ABORT_NONE;
 }
 
-static inline uint32_t owner_may_write(void *context, uint32_t object)
+static inline uint32_t owner_may_write(void *context, uint32_t object, size_t *size)
 {
     (void)context;
+    *size = object == NUMBER ? 2 : 0;
     return object == READONLY ? SDO_ABORT_READ_ONLY : SDO_ABORT_NONE;
 }
 

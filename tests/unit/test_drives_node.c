@@ -346,6 +346,30 @@ static void test_reads_and_writes_that_cannot_be_say_why(void)
     TEST_ASSERT_EQUAL_HEX32(0x08000024, lone_try_read(&lone, 0x1021, 0, &aborted));
 }
 
+/* Command 22: expedited, the length not said. */
+static uint32_t write_without_length(uint16_t index, uint32_t value)
+{
+    lone_take(&lone, 0x605, 8, 0x22 | (uint32_t)index << 8, value);
+    const struct can_frame *answer = lone_find(&lone, 0x585);
+    TEST_ASSERT_NOT_NULL(answer);
+    return answer->data[0] == SDO_ABORT ? little_endian_read32(answer->data + 4) : 0;
+}
+
+static void test_a_number_written_without_its_length_is_the_first_bytes_of_the_four(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, write_without_length(0x1017, 0xAAAA0064));
+    TEST_ASSERT_EQUAL_HEX32(100, lone_read(&lone, 0x1017, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, write_without_length(0x6060, 0xAAAAAA08));
+    TEST_ASSERT_EQUAL_HEX32(8, lone_read(&lone, 0x6060, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, write_without_length(0x6081, 0x00010001));
+    TEST_ASSERT_EQUAL_HEX32(0x00010001, lone_read(&lone, 0x6081, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06010002, write_without_length(0x6041, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x06020000, write_without_length(0x5000, 0));
+    /* A name has no length of its own: all four bytes are meant. */
+    TEST_ASSERT_EQUAL_HEX32(0, write_without_length(0x2000, 0x44434241));
+    TEST_ASSERT_EQUAL_HEX32(0x44434241, lone_read(&lone, 0x2000, 0));
+}
+
 static void test_a_stopped_node_answers_no_request(void)
 {
     lone_nmt(&lone, NMT_STOP);
@@ -389,6 +413,7 @@ int main(void)
     RUN_TEST(test_restored_defaults_are_kept_too);
     RUN_TEST(test_a_store_that_is_none_of_this_drive_is_refused_by_its_line);
     RUN_TEST(test_reads_and_writes_that_cannot_be_say_why);
+    RUN_TEST(test_a_number_written_without_its_length_is_the_first_bytes_of_the_four);
     RUN_TEST(test_a_stopped_node_answers_no_request);
     RUN_TEST(test_the_feed_constant_says_how_long_an_increment_is);
     return UNITY_END();

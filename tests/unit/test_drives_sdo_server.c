@@ -18,7 +18,17 @@ static void test_a_number_is_downloaded_in_one_frame(void)
     TEST_ASSERT_EQUAL_HEX16(0x000F, little_endian_read16(stored));
 }
 
-static void test_without_a_size_four_bytes_are_meant(void)
+static void test_without_a_size_a_number_takes_as_many_bytes_as_it_has(void)
+{
+    ask(0x22, NUMBER, 0xAAAA000F);
+    assert_answer(0x60, NUMBER, 0);
+    TEST_ASSERT_EQUAL_UINT(2, stored_length);
+    TEST_ASSERT_EQUAL_HEX16(0x000F, little_endian_read16(stored));
+    ask(0x23, NUMBER, 0xAAAA000F);
+    assert_answer(0x80, NUMBER, 0x06070010);
+}
+
+static void test_without_a_size_four_bytes_of_a_text_are_meant(void)
 {
     ask(0x22, TEXT, 0x44434241);
     assert_answer(0x60, TEXT, 0);
@@ -187,7 +197,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_number_is_uploaded_in_one_frame);
     RUN_TEST(test_a_number_is_downloaded_in_one_frame);
-    RUN_TEST(test_without_a_size_four_bytes_are_meant);
+    RUN_TEST(test_without_a_size_a_number_takes_as_many_bytes_as_it_has);
+    RUN_TEST(test_without_a_size_four_bytes_of_a_text_are_meant);
     RUN_TEST(test_refusals_name_the_object_and_the_reason);
     RUN_TEST(test_a_text_is_uploaded_in_segments);
     RUN_TEST(test_an_empty_value_is_uploaded_as_one_empty_segment);
