@@ -76,6 +76,9 @@ void takt_servo_set_filter(struct servo *drive)
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         if (drive->rpdo[i].is_valid)
             accept(drive, drive->rpdo[i].cob_id);
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
+        if (drive->remote >> i & 1)
+            accept(drive, drive->tpdo[i].cob_id);
 }
 
 static void set_target_pdo(struct servo *drive, const struct pdo *target)
@@ -248,12 +251,24 @@ static void take_other(struct servo *drive, const struct can_frame *frame)
     }
 }
 
+static void take_remote(struct servo *drive, const struct can_frame *frame)
+{
+    if (drive->lss.is_nameless)
+        return;
+    if (nmt_is_guard(frame, drive->config.node))
+        takt_servo_take_guard(drive);
+    else if (drive->nmt == NMT_OPERATIONAL)
+        takt_servo_take_remote(drive, frame);
+}
+
 void takt_servo_on_frame(struct servo *drive, const struct can_frame *frame)
 {
     if (!servo_accepts(drive, frame) || drive->boot_ns != 0)
         return;
-    if (nmt_is_guard(frame, drive->config.node) && !drive->lss.is_nameless)
-        takt_servo_take_guard(drive);
+    if (can_is_remote(frame)) {
+        take_remote(drive, frame);
+        return;
+    }
     if (frame->id > CAN_ID_MASK)
         return;
     if (drive->lss.is_nameless && frame->id != LSS_REQUEST_COB_ID &&

@@ -167,7 +167,10 @@ static void update_tpdo(struct servo *drive, unsigned i)
     const struct drive_pdo *pdo = &drive->tpdo[i];
     update_pdo(drive, &drive->tpdo[i], &c->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO);
     const unsigned bit = pdo->is_valid && pdo->transmission <= TYPE_SYNC_MAX && pdo->count > 0;
+    const unsigned remote = pdo->is_valid && !(c->tpdo[i].cob_id & COB_NO_RTR) && pdo->count > 0;
     drive->synchronous = (uint8_t)((drive->synchronous & ~(1u << i)) | bit << i);
+    drive->remote = (uint8_t)((drive->remote & ~(1u << i)) | remote << i);
+    takt_servo_set_filter(drive);
     start_tpdo(drive, i);
     watch_events(drive);
 }
@@ -377,6 +380,31 @@ void takt_servo_send_due(struct servo *drive)
         return;
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         send_if_due(drive, i);
+}
+
+/*
+ * With the values of now. One that events send is an event more, and keeps its inhibit time; one of
+ * type 0 that has an event goes out at the next SYNC all the same.
+ */
+static void answer_remote(struct servo *drive, unsigned i)
+{
+    struct drive_pdo *pdo = &drive->tpdo[i];
+    const bool has_event = pdo->is_due;
+    if (is_event_driven(pdo)) {
+        pdo->is_due = true;
+        send_if_due(drive, i);
+        takt_servo_look_soon(drive);
+    } else {
+        send_pdo(drive, pdo);
+        pdo->is_due = has_event;
+    }
+}
+
+void takt_servo_take_remote(struct servo *drive, const struct can_frame *frame)
+{
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
+        if (drive->remote >> i & 1 && drive->tpdo[i].cob_id == (frame->id & CAN_ID_MASK))
+            answer_remote(drive, i);
 }
 
 uint64_t takt_servo_next_pdo_ns(const struct servo *drive)

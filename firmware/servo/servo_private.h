@@ -121,6 +121,8 @@ void takt_servo_update_pdo(struct servo *drive, uint16_t index);
 void takt_servo_start_pdos(struct servo *drive); /* operational has been entered */
 void takt_servo_take_rpdo(struct servo *drive, const struct can_frame *frame);
 void takt_servo_apply_held(struct servo *drive);
+/* The TPDO that a remote frame asks for, if there is one that may be asked for. */
+void takt_servo_take_remote(struct servo *drive, const struct can_frame *frame);
 void takt_servo_send_synchronous(struct servo *drive, const struct can_frame *sync);
 /* Sends what an event or a timer has made due. */
 void takt_servo_send_due(struct servo *drive);

@@ -153,6 +153,7 @@ struct servo {
     uint16_t rpdo_id[DRIVE_PDO_COUNT]; /* DRIVE_NO_ID: it is not valid */
     uint8_t held;                      /* bit of an RPDO: its frame waits for SYNC */
     uint8_t synchronous;               /* bit of a TPDO: SYNC may send it */
+    uint8_t remote;                    /* bit of a TPDO: a remote frame may ask for it */
     struct drive_pdo rpdo[DRIVE_PDO_COUNT], tpdo[DRIVE_PDO_COUNT];
     uint8_t watched;          /* objects whose change is an event: groups */
     uint16_t seen_statusword; /* for that */

@@ -158,6 +158,80 @@ static void test_type_0_answers_the_sync_after_a_change(void)
     TEST_ASSERT_EQUAL_UINT(1, lone_count_sent(&lone, 0x385));
 }
 
+/* ---- Remote frames ---- */
+
+static unsigned ask_for(unsigned id)
+{
+    lone_take(&lone, CAN_REMOTE | id, 0, 0, 0);
+    return lone_count_sent(&lone, id);
+}
+
+static void set_tpdo(unsigned index, uint32_t cob_id, uint32_t type)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, (uint16_t)index, 1, 4, cob_id | 0x80000000));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, (uint16_t)index, 2, 1, type));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, (uint16_t)index, 1, 4, cob_id));
+}
+
+static void test_a_remote_frame_is_answered_by_the_tpdo_it_asks_for(void)
+{
+    set_tpdo(0x1800, 0x185, 1);
+    lone_nmt(&lone, NMT_START);
+    TEST_ASSERT_EQUAL_UINT(1, ask_for(0x185));
+    const struct can_frame *frame = lone_find(&lone, 0x185);
+    TEST_ASSERT_EQUAL_UINT8(6, frame->length);
+    TEST_ASSERT_EQUAL_HEX16(0x0250, little_endian_read16(frame->data));
+    TEST_ASSERT_EQUAL_UINT(0, ask_for(0x186));
+    lone_sync(&lone);
+    TEST_ASSERT_EQUAL_UINT(1, lone_count_sent(&lone, 0x185));
+}
+
+static void test_no_remote_frame_is_answered_where_bit_30_or_the_state_forbids_it(void)
+{
+    lone_nmt(&lone, NMT_START);
+    TEST_ASSERT_EQUAL_UINT(0, ask_for(0x185)); /* as it is at power-on */
+    set_tpdo(0x1800, 0x40000185, 1);
+    TEST_ASSERT_EQUAL_UINT(0, ask_for(0x185));
+    set_tpdo(0x1800, 0x185, 1);
+    TEST_ASSERT_EQUAL_UINT(1, ask_for(0x185));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1800, 1, 4, 0x80000185));
+    TEST_ASSERT_EQUAL_UINT(0, ask_for(0x185)); /* not valid */
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1800, 1, 4, 0x185));
+    lone_nmt(&lone, NMT_ENTER_PREOPERATIONAL);
+    TEST_ASSERT_EQUAL_UINT(0, ask_for(0x185));
+}
+
+static void test_a_remote_frame_within_the_inhibit_time_is_answered_after_it(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1802, 3, 2, 200));
+    set_tpdo(0x1802, 0x385, 255);
+    lone_nmt(&lone, NMT_START);
+    lone_step(&lone, 50);
+    TEST_ASSERT_EQUAL_UINT(1, ask_for(0x385));
+    TEST_ASSERT_EQUAL_UINT(0, ask_for(0x385));
+    lone_step(&lone, 19);
+    TEST_ASSERT_EQUAL_UINT(0, lone_count_sent(&lone, 0x385));
+    lone_step(&lone, 1);
+    TEST_ASSERT_EQUAL_UINT(1, lone_count_sent(&lone, 0x385));
+    lone_step(&lone, 100);
+    TEST_ASSERT_EQUAL_UINT(0, lone_count_sent(&lone, 0x385));
+}
+
+static void test_a_remote_frame_does_not_take_the_event_from_the_next_sync(void)
+{
+    set_tpdo(0x1802, 0x385, 0);
+    lone_nmt(&lone, NMT_START);
+    lone_step(&lone, 1);
+    lone_sync(&lone);
+    lone_control(&lone, CIA402_SHUTDOWN, 8);
+    lone_step(&lone, 1);
+    TEST_ASSERT_EQUAL_UINT(1, ask_for(0x385));
+    lone_sync(&lone);
+    TEST_ASSERT_EQUAL_UINT(1, lone_count_sent(&lone, 0x385));
+}
+
+/* ---- SYNC ---- */
+
 static void test_sync_may_have_another_identifier(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x1005, 0, 4, 0x40000080));
@@ -228,6 +302,10 @@ int main(void)
     RUN_TEST(test_a_tpdo_begins_at_its_sync_counter);
     RUN_TEST(test_an_event_sends_a_tpdo_but_not_within_its_inhibit_time);
     RUN_TEST(test_type_0_answers_the_sync_after_a_change);
+    RUN_TEST(test_a_remote_frame_is_answered_by_the_tpdo_it_asks_for);
+    RUN_TEST(test_no_remote_frame_is_answered_where_bit_30_or_the_state_forbids_it);
+    RUN_TEST(test_a_remote_frame_within_the_inhibit_time_is_answered_after_it);
+    RUN_TEST(test_a_remote_frame_does_not_take_the_event_from_the_next_sync);
     RUN_TEST(test_sync_may_have_another_identifier);
     RUN_TEST(test_targets_behind_the_window_of_1007_are_none);
     RUN_TEST(test_the_time_of_day_is_taken_where_1012_says_so_and_goes_on);
