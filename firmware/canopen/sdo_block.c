@@ -200,14 +200,15 @@ static void acknowledge(struct sdo_server *server)
  * Segments count from 1. One that does not continue the row is lost; the acknowledgement at the end
  * of the block tells the client from where to repeat.
  */
-void takt_sdo_server_take_block_segment(struct sdo_server *server, const struct can_frame *frame)
+bool takt_sdo_server_take_block_segment(struct sdo_server *server, const struct can_frame *frame)
 {
     bool is_last = frame->data[0] & BLOCK_LAST_SEGMENT;
     uint8_t sequence = frame->data[0] & (uint8_t)~BLOCK_LAST_SEGMENT;
-    if (sequence == server->sequence + 1) {
+    bool is_next = sequence == server->sequence + 1;
+    if (is_next) {
         if (server->moved + SDO_SEGMENT_MAX > sizeof server->data) {
             takt_sdo_server_abort(server, SDO_ABORT_TOO_LONG);
-            return;
+            return true;
         }
         memcpy(server->data + server->moved, frame->data + 1, SDO_SEGMENT_MAX);
         server->moved += SDO_SEGMENT_MAX;
@@ -216,6 +217,7 @@ void takt_sdo_server_take_block_segment(struct sdo_server *server, const struct 
     }
     if (is_last || sequence == SDO_BLOCK_SEGMENTS_MAX)
         acknowledge(server);
+    return is_next;
 }
 
 /* Byte 0 says how many bytes of the last segment hold nothing, bytes 1 and 2 are the checksum. */
@@ -248,8 +250,11 @@ void takt_sdo_server_take_block_download(struct sdo_server *server, const struct
         takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
 }
 
-void takt_sdo_server_go_on(struct sdo_server *server)
+void takt_sdo_server_go_on(struct sdo_server *server, uint64_t now_ns)
 {
+    const uint8_t before = server->sequence;
     if (server->state == SDO_SERVER_SENDING)
         takt_sdo_server_send_segments(server);
+    if (server->sequence != before)
+        server->moved_ns = now_ns;
 }

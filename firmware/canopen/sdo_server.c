@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#define MILLISECOND_NS UINT64_C(1000000)
+
 void takt_sdo_server_init(struct sdo_server *server, uint8_t node,
                           const struct sdo_server_owner *owner)
 {
@@ -34,6 +36,19 @@ void takt_sdo_server_abort(struct sdo_server *server, uint32_t code)
 {
     takt_sdo_server_answer(server, SDO_ABORT, code);
     server->state = SDO_SERVER_IDLE;
+}
+
+uint64_t takt_sdo_server_due_ns(const struct sdo_server *server)
+{
+    return server->state == SDO_SERVER_IDLE
+               ? UINT64_MAX
+               : server->moved_ns + SDO_SERVER_TIMEOUT_MS * MILLISECOND_NS;
+}
+
+void takt_sdo_server_give_up(struct sdo_server *server)
+{
+    TAKT_ASSERT(server->state != SDO_SERVER_IDLE);
+    takt_sdo_server_abort(server, SDO_ABORT_TIMEOUT);
 }
 
 bool takt_sdo_server_open(struct sdo_server *server)
@@ -190,18 +205,8 @@ static void take_request(struct sdo_server *server, const struct can_frame *fram
         takt_sdo_server_begin_upload(server);
 }
 
-void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *frame)
+static void take_command(struct sdo_server *server, const struct can_frame *frame)
 {
-    if (frame->length != SDO_LENGTH)
-        return;
-    if (frame->data[0] == SDO_ABORT) {
-        server->state = SDO_SERVER_IDLE;
-        return;
-    }
-    if (server->state == SDO_SERVER_TAKING) {
-        takt_sdo_server_take_block_segment(server, frame);
-        return;
-    }
     switch (frame->data[0] & SDO_COMMAND_MASK) {
     case SDO_REQUEST_DOWNLOAD:
     case SDO_REQUEST_UPLOAD:
@@ -223,4 +228,23 @@ void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *fra
         takt_sdo_server_abort(server, SDO_ABORT_COMMAND);
         break;
     }
+}
+
+/*
+ * While a block is being taken, only a segment that is the next one counts as getting on: what a
+ * client sends in vain, such as requests for something else, would keep the block for ever.
+ */
+void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *frame, uint64_t now_ns)
+{
+    bool gets_on = true;
+    if (frame->length != SDO_LENGTH)
+        return;
+    if (frame->data[0] == SDO_ABORT)
+        server->state = SDO_SERVER_IDLE;
+    else if (server->state == SDO_SERVER_TAKING)
+        gets_on = takt_sdo_server_take_block_segment(server, frame);
+    else
+        take_command(server, frame);
+    if (gets_on)
+        server->moved_ns = now_ns;
 }

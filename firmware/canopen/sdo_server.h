@@ -8,7 +8,8 @@
  *                                                     |    (more)          |
  *                                                     +--all acknowledged--> ENDING --end--> IDLE
  *          --block download---> TAKING --last block--> TAKEN --end--> IDLE
- *     from every state: abort, and a request that begins another transfer
+ *     from every state: abort, a client that stays silent, and a request that begins another
+ *     transfer; but in TAKING whatever comes is a segment
  */
 #ifndef TAKT_CANOPEN_SDO_SERVER_H
 #define TAKT_CANOPEN_SDO_SERVER_H
@@ -23,6 +24,16 @@
 #define SDO_SERVER_WRITE_MAX 1024
 
 #define SDO_BLOCK_SEGMENTS_MAX 127
+
+/*
+ * A transfer in which nothing has moved for this long is given up: a client that has gone away
+ * would keep the server from all others. CiA 301 names the abort (05040000) and no time. Twice what
+ * takt's master by default waits for an answer (sdo_timeout_ms), so that a client whose answer was
+ * lost gives up first and the server's abort does not get into its next attempt; and twice the
+ * 1.7 s that a block of 127 segments, 135 bits each, takes on the slowest bus, 10 kbit/s: while its
+ * first one is lost, nothing moves before the client repeats it.
+ */
+#define SDO_SERVER_TIMEOUT_MS 4000
 
 /* What the server asks of its owner. Abort codes: SDO_ABORT_NONE is success. */
 struct sdo_server_owner {
@@ -60,6 +71,7 @@ struct sdo_server {
     uint8_t node;
 
     enum sdo_server_state state;
+    uint64_t moved_ns; /* when the transfer has got on */
     uint32_t object;
     uint8_t toggle;
     size_t expected; /* download: bytes announced; 0: not announced */
@@ -83,10 +95,20 @@ void takt_sdo_server_init(struct sdo_server *server, uint8_t node,
 /* Forgets the transfer under way without a word. */
 void takt_sdo_server_reset(struct sdo_server *server);
 
-/* A request has come, a frame of 8 bytes to this node's server; the answer is sent at once. */
-void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *frame);
+/*
+ * A request has come, a frame of 8 bytes to this node's server; the answer is sent at once. now_ns:
+ * by any clock, always the same.
+ */
+void takt_sdo_server_take(struct sdo_server *server, const struct can_frame *frame,
+                          uint64_t now_ns);
 
 /* Segments of a block that found no room are sent again. To be called now and then. */
-void takt_sdo_server_go_on(struct sdo_server *server);
+void takt_sdo_server_go_on(struct sdo_server *server, uint64_t now_ns);
+
+/* When the transfer under way is given up, if it does not get on; UINT64_MAX: there is none. */
+uint64_t takt_sdo_server_due_ns(const struct sdo_server *server);
+
+/* Aborts it. */
+void takt_sdo_server_give_up(struct sdo_server *server);
 
 #endif

@@ -26,8 +26,10 @@ bool takt_sdo_server_deliver(struct sdo_server *server, const uint8_t *bytes, si
 /* Block transfers. */
 void takt_sdo_server_take_block_upload(struct sdo_server *server, const struct can_frame *frame);
 void takt_sdo_server_take_block_download(struct sdo_server *server, const struct can_frame *frame);
-/* A frame while a block is being taken: a segment, whatever its first bits say. */
-void takt_sdo_server_take_block_segment(struct sdo_server *server, const struct can_frame *frame);
+/*
+ * A frame while a block is being taken: a segment, whatever its first bits say. True: the next one.
+ */
+bool takt_sdo_server_take_block_segment(struct sdo_server *server, const struct can_frame *frame);
 void takt_sdo_server_send_segments(struct sdo_server *server);
 
 #endif

@@ -182,7 +182,9 @@ static void take_request(struct servo *drive, const struct can_frame *frame)
 {
     struct drive_requests *r = &drive->requests;
     if (drive->config.sdo_us == 0) {
-        takt_sdo_server_take(&drive->sdo, frame);
+        takt_sdo_server_take(&drive->sdo, frame, drive->now_ns);
+        if (drive->sdo.state != SDO_SERVER_IDLE)
+            takt_servo_look_soon(drive);
         return;
     }
     if (r->count == SERVO_REQUESTS)
@@ -198,10 +200,23 @@ static void answer_request(struct servo *drive)
     struct drive_requests *r = &drive->requests;
     if (r->count == 0 || drive->now_ns < r->due_ns)
         return;
-    takt_sdo_server_take(&drive->sdo, &r->frame[0]);
+    takt_sdo_server_take(&drive->sdo, &r->frame[0], drive->now_ns);
     r->count--;
     memmove(r->frame, r->frame + 1, r->count * sizeof r->frame[0]);
     r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
+}
+
+/* A client whose request waits is not silent. A stopped node has no SDO, for an abort neither. */
+static void watch_client(struct servo *drive)
+{
+    if (drive->requests.count > 0 || drive->now_ns < takt_sdo_server_due_ns(&drive->sdo))
+        return;
+    if (drive->nmt == NMT_STOPPED) {
+        takt_sdo_server_reset(&drive->sdo);
+        return;
+    }
+    takt_servo_tell(drive, DRIVE_EVENT_SDO_ABORT, drive->sdo.object, SDO_ABORT_TIMEOUT);
+    takt_sdo_server_give_up(&drive->sdo);
 }
 
 /* ---- Clocks ---- */
@@ -316,6 +331,17 @@ static void watch_connection(struct servo *drive)
     }
 }
 
+static uint64_t next_due_ns(const struct servo *drive)
+{
+    const struct drive_requests *r = &drive->requests;
+    uint64_t due_ns = earlier(drive->heartbeat_ns, takt_servo_next_pdo_ns(drive));
+    due_ns = earlier(due_ns, drive->guard_lost_ns);
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
+        due_ns = earlier(due_ns, drive->consumer_ns[i]);
+    due_ns = earlier(due_ns, r->count > 0 ? r->due_ns : takt_sdo_server_due_ns(&drive->sdo));
+    return drive->emcy_count > 0 ? earlier(due_ns, drive->emcy_ns) : due_ns;
+}
+
 /* Everything that waits for a time; notes when the next of it comes. */
 static void run_timers(struct servo *drive)
 {
@@ -328,6 +354,7 @@ static void run_timers(struct servo *drive)
         return;
     }
     answer_request(drive);
+    watch_client(drive);
     if (drive->now_ns >= drive->heartbeat_ns) {
         takt_servo_send_heartbeat(drive, drive->nmt);
         drive->heartbeat_ns = drive->now_ns + (uint64_t)heartbeat_ms * MILLISECOND_NS;
@@ -335,14 +362,7 @@ static void run_timers(struct servo *drive)
     watch_connection(drive);
     takt_servo_send_waiting_emergencies(drive);
     takt_servo_send_due(drive);
-    drive->due_ns = earlier(drive->heartbeat_ns, takt_servo_next_pdo_ns(drive));
-    drive->due_ns = earlier(drive->due_ns, drive->guard_lost_ns);
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
-        drive->due_ns = earlier(drive->due_ns, drive->consumer_ns[i]);
-    if (drive->requests.count > 0)
-        drive->due_ns = earlier(drive->due_ns, drive->requests.due_ns);
-    if (drive->emcy_count > 0)
-        drive->due_ns = earlier(drive->due_ns, drive->emcy_ns);
+    drive->due_ns = next_due_ns(drive);
 }
 
 /* Something that is an event may have changed. */
@@ -373,7 +393,7 @@ void takt_servo_step(struct servo *drive, uint32_t cycle_ns)
     if (drive->now_ns >= earlier(drive->due_ns, drive->sync_lost_ns))
         run_timers(drive);
     if (drive->sdo.state == SDO_SERVER_SENDING)
-        takt_sdo_server_go_on(&drive->sdo);
+        takt_sdo_server_go_on(&drive->sdo, drive->now_ns);
 }
 
 enum nmt_state takt_servo_get_nmt_state(const struct servo *drive)

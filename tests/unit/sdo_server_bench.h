@@ -14,6 +14,8 @@
 #define NODE       9
 #define FRAMES_MAX 512
 
+#define TIMEOUT_NS (UINT64_C(1000000) * SDO_SERVER_TIMEOUT_MS)
+
 #define NUMBER   SDO_OBJECT(0x6040, 0)
 #define TEXT     SDO_OBJECT(0x2000, 0)
 #define LONG     SDO_OBJECT(0x2001, 0)
@@ -23,7 +25,8 @@
 static struct sdo_server server;
 static struct can_frame sent[FRAMES_MAX];
 static unsigned sent_count;
-static unsigned room; /* frames that may still be sent */
+static unsigned room;   /* frames that may still be sent */
+static uint64_t now_ns; /* the server's clock */
 
 static uint8_t stored[SDO_SERVER_WRITE_MAX];
 static size_t stored_length;
@@ -82,6 +85,7 @@ void setUp(void)
     takt_sdo_server_init(&server, NODE, &owner);
     sent_count = 0;
     room = UINT32_MAX;
+    now_ns = 0;
     stored_length = 0;
     stored_object = 0;
 }
@@ -95,7 +99,7 @@ static inline void ask(uint8_t command, uint32_t object, uint32_t value)
     struct can_frame frame;
     takt_sdo_write_initiate(&frame, SDO_REQUEST_FUNCTION + NODE, command, object, value);
     sent_count = 0;
-    takt_sdo_server_take(&server, &frame);
+    takt_sdo_server_take(&server, &frame, now_ns);
 }
 
 /* A frame that is not the first of a transfer. */
@@ -106,7 +110,7 @@ static inline void tell(uint8_t command, const void *bytes, size_t length)
     if (length > 0)
         memcpy(frame.data + 1, bytes, length);
     sent_count = 0;
-    takt_sdo_server_take(&server, &frame);
+    takt_sdo_server_take(&server, &frame, now_ns);
 }
 
 static inline void assert_answer(uint8_t command, uint32_t object, uint32_t value)
@@ -117,6 +121,18 @@ static inline void assert_answer(uint8_t command, uint32_t object, uint32_t valu
     TEST_ASSERT_EQUAL_HEX8(command, sent[0].data[0]);
     TEST_ASSERT_EQUAL_HEX32(object, takt_sdo_read_object(&sent[0]));
     TEST_ASSERT_EQUAL_HEX32(value, little_endian_read32(sent[0].data + 4));
+}
+
+/* A client that says nothing more is waited for until then. */
+static inline void assert_given_up_at(uint64_t due_ns, uint32_t object)
+{
+    TEST_ASSERT_EQUAL_UINT64(due_ns, takt_sdo_server_due_ns(&server));
+    sent_count = 0;
+    takt_sdo_server_give_up(&server);
+    assert_answer(0x80, object, 0x05040000);
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, takt_sdo_server_due_ns(&server));
+    ask(0x40, NUMBER, 0);
+    assert_answer(0x4B, NUMBER, 0x1234);
 }
 
 static inline void fill(size_t length)

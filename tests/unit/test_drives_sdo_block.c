@@ -66,10 +66,10 @@ static void test_a_block_that_finds_no_room_goes_on_later(void)
     tell(0xA3, NULL, 0);
     TEST_ASSERT_EQUAL_UINT(6, sent_count);
     room = UINT32_MAX;
-    takt_sdo_server_go_on(&server);
+    takt_sdo_server_go_on(&server, now_ns);
     TEST_ASSERT_EQUAL_UINT(15, sent_count);
     TEST_ASSERT_EQUAL_HEX8(0x8F, sent[14].data[0]);
-    takt_sdo_server_go_on(&server);
+    takt_sdo_server_go_on(&server, now_ns);
     TEST_ASSERT_EQUAL_UINT(15, sent_count);
 }
 
@@ -169,6 +169,58 @@ static void test_a_block_download_is_bounded_and_may_be_aborted(void)
     TEST_ASSERT_EQUAL_INT(SDO_SERVER_IDLE, server.state);
 }
 
+static void test_a_block_upload_is_given_up_at_each_of_its_stages(void)
+{
+    fill(20);
+    ask(0xA4, LONG, 2);
+    assert_given_up_at(TIMEOUT_NS, LONG);
+    ask(0xA4, LONG, 2);
+    now_ns = 100;
+    tell(0xA3, NULL, 0);
+    assert_given_up_at(100 + TIMEOUT_NS, LONG);
+    ask(0xA4, LONG, 127);
+    tell(0xA3, NULL, 0);
+    now_ns = 200;
+    acknowledge(3, 127);
+    TEST_ASSERT_EQUAL_INT(SDO_SERVER_ENDING, server.state);
+    assert_given_up_at(200 + TIMEOUT_NS, LONG);
+}
+
+static void test_an_upload_gets_on_while_its_segments_find_room(void)
+{
+    fill(100);
+    ask(0xA4, LONG, 127);
+    room = 6;
+    tell(0xA3, NULL, 0);
+    now_ns = 100;
+    takt_sdo_server_go_on(&server, now_ns);
+    TEST_ASSERT_EQUAL_UINT64(TIMEOUT_NS, takt_sdo_server_due_ns(&server));
+    room = 1;
+    now_ns = 200;
+    takt_sdo_server_go_on(&server, now_ns);
+    room = UINT32_MAX;
+    assert_given_up_at(200 + TIMEOUT_NS, LONG);
+}
+
+static void test_a_block_download_is_given_up_whatever_else_the_client_asks(void)
+{
+    const uint8_t *data = data_of(28);
+    ask(0xC6, LONG, 28);
+    now_ns = 100;
+    send_segments(data, 1, 2, false);
+    now_ns = 200;
+    ask(0x40, NUMBER, 0); /* as a segment it is number 64 */
+    TEST_ASSERT_EQUAL_UINT(0, sent_count);
+    ask(0xC6, LONG, 28); /* number 70, the last */
+    TEST_ASSERT_EQUAL_HEX8(0xA2, sent[0].data[0]);
+    assert_given_up_at(100 + TIMEOUT_NS, LONG);
+    ask(0xC6, LONG, 7);
+    now_ns = 300;
+    send_segments(data, 1, 1, true);
+    TEST_ASSERT_EQUAL_INT(SDO_SERVER_TAKEN, server.state);
+    assert_given_up_at(300 + TIMEOUT_NS, LONG);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -181,5 +233,8 @@ int main(void)
     RUN_TEST(test_a_wrong_checksum_changes_nothing);
     RUN_TEST(test_a_client_without_checksum_is_believed);
     RUN_TEST(test_a_block_download_is_bounded_and_may_be_aborted);
+    RUN_TEST(test_a_block_upload_is_given_up_at_each_of_its_stages);
+    RUN_TEST(test_an_upload_gets_on_while_its_segments_find_room);
+    RUN_TEST(test_a_block_download_is_given_up_whatever_else_the_client_asks);
     return UNITY_END();
 }

@@ -135,6 +135,34 @@ static void test_a_new_request_ends_the_transfer_before(void)
     TEST_ASSERT_EQUAL_HEX32(0x05040001, little_endian_read32(sent[0].data + 4));
 }
 
+static void test_a_segmented_transfer_is_given_up_when_it_has_not_moved_for_the_timeout(void)
+{
+    now_ns = 1000;
+    ask(0x21, TEXT, 14);
+    TEST_ASSERT_EQUAL_UINT64(1000 + TIMEOUT_NS, takt_sdo_server_due_ns(&server));
+    now_ns = 5000;
+    tell(0x00, "1234567", 7);
+    assert_given_up_at(5000 + TIMEOUT_NS, TEXT);
+    fill(30);
+    ask(0x40, LONG, 0);
+    now_ns = 9000;
+    tell(0x60, NULL, 0);
+    assert_given_up_at(9000 + TIMEOUT_NS, LONG);
+}
+
+static void test_a_transfer_that_has_ended_waits_for_nobody(void)
+{
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, takt_sdo_server_due_ns(&server));
+    ask(0x2B, NUMBER, 1);
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, takt_sdo_server_due_ns(&server));
+    ask(0x21, TEXT, 7);
+    tell(0x01, "1234567", 7);
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, takt_sdo_server_due_ns(&server));
+    ask(0x21, TEXT, 7);
+    ask(0x80, TEXT, 0x08000000);
+    TEST_ASSERT_EQUAL_UINT64(UINT64_MAX, takt_sdo_server_due_ns(&server));
+}
+
 static void test_an_abort_of_the_client_is_not_answered(void)
 {
     ask(0x21, TEXT, 14);
@@ -160,7 +188,7 @@ static void test_a_frame_of_another_length_is_no_request(void)
     struct can_frame frame;
     takt_sdo_write_initiate(&frame, SDO_REQUEST_FUNCTION + NODE, 0x40, NUMBER, 0);
     frame.length = 7;
-    takt_sdo_server_take(&server, &frame);
+    takt_sdo_server_take(&server, &frame, now_ns);
     TEST_ASSERT_EQUAL_UINT(0, sent_count);
 }
 
@@ -207,6 +235,8 @@ int main(void)
     RUN_TEST(test_a_value_of_another_length_than_announced_is_refused);
     RUN_TEST(test_a_download_without_announced_length_is_bounded);
     RUN_TEST(test_a_new_request_ends_the_transfer_before);
+    RUN_TEST(test_a_segmented_transfer_is_given_up_when_it_has_not_moved_for_the_timeout);
+    RUN_TEST(test_a_transfer_that_has_ended_waits_for_nobody);
     RUN_TEST(test_an_abort_of_the_client_is_not_answered);
     RUN_TEST(test_an_unknown_command_is_an_abort);
     RUN_TEST(test_a_value_below_the_threshold_is_uploaded_the_common_way);
