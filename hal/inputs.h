@@ -25,8 +25,11 @@ struct spindle_feedback {
 struct inputs {
     double feed_override_percent;  /* %F, 0 ... 120 */
     double rapid_override_percent; /* 0 ... 100 */
-    bool single_block; /* every motion that can still be brought to rest at its end is */
-    bool feed_hold;    /* true: come to rest on the path and stay */
+    bool single_block;  /* every motion that can still be brought to rest at its end is */
+    bool feed_hold;     /* come to rest on the path and stay, where the program lets it (M53) */
+    bool feed_stop;     /* likewise, whatever the program says */
+    bool program_stop;  /* nothing behind M0 is done in the cycle that passes it */
+    bool optional_stop; /* nor behind M1 */
     bool probe_contact;
     uint32_t digital; /* bit i: input i */
     double analogue[INPUTS_ANALOGUE_MAX];

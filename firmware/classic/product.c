@@ -87,7 +87,7 @@ static double wanted_ratio(const struct block *b, const struct motion_operator *
 {
     const unsigned may = b->move.overrides;
 
-    if (wanted->stop || (wanted->hold && (may & OVERRIDE_HOLD) != 0)) {
+    if (motion_is_held(wanted, (may & OVERRIDE_HOLD) != 0)) {
         return 0.0;
     }
     if (b->move.kind == MOVE_RAPID) {

@@ -123,15 +123,24 @@ static void follow_changer(struct controller *c)
     c->outputs.tool_change = tool_changer_asks(&c->changer);
 }
 
+static enum motion_hold hold_of(const struct controller *c, const struct inputs *in)
+{
+    if (drives_get_state(&c->drives) == DRIVES_STOPPING) {
+        return MOTION_STOPS;
+    }
+    return in->feed_stop ? MOTION_HOLDS : in->feed_hold ? MOTION_HOLD_ASKED : MOTION_GOES;
+}
+
 static struct motion_operator operator_of(const struct controller *c, const struct inputs *in)
 {
     return (struct motion_operator){
         .feed_ratio = c->spindle.ratio *
                       maths_clamp(0.01 * in->feed_override_percent, 0.0, BLOCK_OVERRIDE_MAX),
         .rapid_ratio = maths_clamp(0.01 * in->rapid_override_percent, 0.0, 1.0),
-        .hold = in->feed_hold,
+        .hold = hold_of(c, in),
         .single_block = in->single_block,
-        .stop = drives_get_state(&c->drives) == DRIVES_STOPPING,
+        .program_stops = in->program_stop,
+        .optional_stops = in->optional_stop,
         .wait = c->spindle.waits,
         .settles = !controller_shape_is_settled(c),
         .tool_waits = tool_changer_waits(&c->changer),
@@ -271,7 +280,8 @@ static void follow_probe(struct controller *c, const struct inputs *in)
     if (takt_controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &at)) {
         takt_motion_end_here(&c->motion);
     }
-    if (c->program_waits && takt_motion_is_idle(&c->motion) && controller_shape_is_settled(c)) {
+    if (hold_of(c, in) == MOTION_GOES && c->program_waits && takt_motion_is_idle(&c->motion) &&
+        controller_shape_is_settled(c)) {
         struct inputs seen = *in;
 
         takt_drives_add_inputs(&c->drives, &seen);

@@ -66,18 +66,16 @@ void takt_controller_set_coolant(struct controller *c, bool flood, bool on)
         c->outputs.mist = on;
 }
 
-bool takt_controller_passed_stop(const struct controller *c, bool *optional)
+bool takt_controller_passed_stop(const struct controller *c)
 {
-    for (uint32_t i = c->motion.passed_first; c->has_record && i != c->path.first; i++) {
-        if (takt_path_kind(&c->path, i) == MOVE_STOP) {
-            struct move move;
+    return c->has_record && c->motion.stops;
+}
 
-            takt_path_read_move(&c->path, i, &move);
-            *optional = move.optional;
-            return true;
-        }
-    }
-    return false;
+bool takt_controller_is_settled(const struct controller *c)
+{
+    double rpm;
+
+    return controller_shape_is_settled(c) && !spindle_sync_get_command(&c->sync, &rpm);
 }
 
 static void be_faulted(struct controller *c)

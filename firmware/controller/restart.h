@@ -47,8 +47,14 @@ bool takt_controller_has_ended(const struct controller *c);
 void takt_controller_recover(struct controller *c, const struct controller_config *config,
                              bool home);
 
-/* The last cycle has passed M0, or M1 (*optional). */
-bool takt_controller_passed_stop(const struct controller *c, bool *optional);
+/* The last cycle has passed M0 or M1 that its inputs wanted, and nothing behind it. */
+bool takt_controller_passed_stop(const struct controller *c);
+
+/*
+ * What the axes do ends with the setpoint: what is sent has come to it, and no tap still turns the
+ * spindle.
+ */
+bool takt_controller_is_settled(const struct controller *c);
 
 /* Spindle and coolant off. */
 void takt_controller_quieten(struct controller *c);

@@ -81,6 +81,31 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
             (m->hands_over == MOTION_HANDS_OVER_LINEAR && !turns_rotary(b)));
 }
 
+/* M0, or M1 where the operator wants it. */
+static bool is_program_stop(const struct motion *m, const struct motion_operator *wanted)
+{
+    struct move move;
+
+    if (!wanted->program_stops || path_at(m->path, m->path->first)->motion ||
+        takt_path_kind(m->path, m->path->first) != MOVE_STOP) {
+        return false;
+    }
+    takt_path_read_move(m->path, m->path->first, &move);
+    return !move.optional || wanted->optional_stops;
+}
+
+/* In a hold: is the oldest block none in which the axes can be held? It is left where it is. */
+static bool is_kept(const struct motion *m, bool held)
+{
+    return held && (m->path->first == m->path->closed || !path_at(m->path, m->path->first)->motion);
+}
+
+static enum motion_result rest(struct motion *m)
+{
+    m->rested++;
+    return MOTION_CYCLE;
+}
+
 /*
  * Goes through what happens at rest; of that only dwells and changes of the tool that wait are
  * read. MOTION_CYCLE: the axes move on in a block; NULL: they wait.
@@ -88,16 +113,22 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
 static enum motion_result serve(struct motion *m, const struct motion_operator *wanted,
                                 const struct block **block)
 {
+    bool held = wanted->hold != MOTION_GOES && !m->changes_tool;
+
     *block = NULL;
-    m->changes_tool = false;
+    m->changes_tool = m->stops = false;
     if (m->done && wanted->settles) {
-        m->rested++;
-        return MOTION_CYCLE;
+        return rest(m);
     }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
-        if (m->done) {
+        if (m->done && !is_kept(m, held)) {
+            m->stops = is_program_stop(m, wanted);
             takt_path_pass(m->path);
             m->done = false;
+            held = wanted->hold != MOTION_GOES;
+        }
+        if (m->stops || is_kept(m, held)) {
+            return rest(m);
         }
         if (m->path->first == m->path->closed) {
             return m->path->finished ? MOTION_EMPTY : MOTION_CYCLE;
@@ -116,8 +147,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
         m->changes_tool = waits_for_tool(m, kind, wanted->tool_waits);
         if (m->changes_tool || !is_wait_over(m, kind)) {
             m->waited++;
-            m->rested++;
-            return MOTION_CYCLE;
+            return rest(m);
         }
         m->waited = 0;
         m->done = true;
@@ -133,18 +163,19 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
     const struct reference_place *here = &m->reference.here;
     const bool stands =
         m->path->has_revolution_feed && wanted->measures && !(wanted->spindle_rev_s > 0.0);
-    const unsigned holds =
-        (wanted->hold ? CEILING_HOLD : 0U) | (wanted->feed_ratio > 0.0 ? 0U : CEILING_FEED) |
-        (wanted->rapid_ratio > 0.0 ? 0U : CEILING_RAPID) | (stands ? CEILING_SPINDLE : 0U);
+    const unsigned holds = (wanted->hold != MOTION_GOES ? CEILING_HOLD : 0U) |
+                           (wanted->feed_ratio > 0.0 ? 0U : CEILING_FEED) |
+                           (wanted->rapid_ratio > 0.0 ? 0U : CEILING_RAPID) |
+                           (stands ? CEILING_SPINDLE : 0U);
 
-    if (m->ending || wanted->stop) {
+    if (m->ending || wanted->hold > MOTION_HOLD_ASKED) {
         return true;
     }
     if (holds == 0) {
         return false;
     }
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
-        return wanted->hold;
+        return wanted->hold != MOTION_GOES;
     }
     return (takt_ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
 }

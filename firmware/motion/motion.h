@@ -52,16 +52,28 @@ enum motion_held {
     MOTION_HELD      /* the hold */
 };
 
+/*
+ * Is the feed held? Each level has all before it. In any of them nothing that lies behind a stop is
+ * passed; a tool change that has begun is finished.
+ */
+enum motion_hold {
+    MOTION_GOES,
+    MOTION_HOLD_ASKED, /* comes to rest on the path where the program lets it (M53), and stays */
+    MOTION_HOLDS,      /* whatever the program says; a thread comes to its end first */
+    MOTION_STOPS       /* in a thread too, which is not gone on with */
+};
+
 /* What the operator wants, in this cycle. */
 struct motion_operator {
     double feed_ratio;  /* of programmed feeds, 0 ... BLOCK_OVERRIDE_MAX; 0 holds */
     double rapid_ratio; /* 0 ... 1; 0 holds rapids */
-    bool hold;
-    bool stop;         /* a hold that nothing in the program can switch off */
-    bool single_block; /* every motion that it can still brake in ends at rest */
-    bool wait;         /* does not leave a stop: the spindle has not reached its speed */
-    bool settles;      /* nor passes it: what is sent has not come to it yet */
-    bool tool_waits;   /* a tool change is not passed: the changer has not answered */
+    enum motion_hold hold;
+    bool single_block;   /* every motion that it can still brake in ends at rest */
+    bool program_stops;  /* the cycle that passes M0 passes nothing behind it */
+    bool optional_stops; /* nor does that of M1 */
+    bool wait;           /* does not leave a stop: the spindle has not reached its speed */
+    bool settles;        /* nor passes it: what is sent has not come to it yet */
+    bool tool_waits;     /* a tool change is not passed: the changer has not answered */
     bool measures; /* the spindle's speed, for feeds per revolution; else they are as commanded */
     double spindle_rev_s; /* >= 0; 0 holds them */
 };
@@ -93,6 +105,7 @@ struct motion {
     enum motion_held held;
     bool done;         /* the oldest block: the next cycle passes it */
     bool changes_tool; /* this cycle stands at a tool change that is not passed */
+    bool stops;        /* this cycle has passed M0 or M1, and nothing behind it */
     /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
     bool busy;
     uint32_t current; /* the block of the last cycle */
@@ -167,6 +180,20 @@ uint32_t takt_motion_stalled_line(const struct motion *m);
 
 /* Has everything on the path been done? */
 bool takt_motion_is_idle(const struct motion *m);
+
+/* Is a hold in a block obeyed? may_hold: as the program says (M53). */
+static inline bool motion_is_held(const struct motion_operator *wanted, bool may_hold)
+{
+    return wanted->hold > MOTION_HOLD_ASKED || (wanted->hold != MOTION_GOES && may_hold);
+}
+
+/* Would a hold that is asked for be obeyed where the axes are? At a stop it always is. */
+static inline bool motion_may_hold(const struct motion *m)
+{
+    const struct path *p = m->path;
+
+    return p->first == p->closed || !path_at(p, p->first)->motion || path_at(p, p->first)->may_hold;
+}
 
 /* The block the last cycle executed. Valid until the next cycle. */
 static inline const struct block *motion_block(const struct motion *m)

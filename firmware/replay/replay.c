@@ -174,7 +174,7 @@ static double wanted_rate(const struct replay *r, const struct block *b,
     const unsigned may = b->move.overrides;
     double ratio = 1.0;
 
-    if (wanted->stop || r->alarm.code != TAKT_OK || (wanted->hold && (may & OVERRIDE_HOLD) != 0)) {
+    if (r->alarm.code != TAKT_OK || motion_is_held(wanted, (may & OVERRIDE_HOLD) != 0)) {
         return 0.0;
     }
     if (b->move.kind == MOVE_RAPID) {

@@ -135,7 +135,7 @@ static unsigned homed_axes(const struct service *s)
 static enum panel_override_reason override_reason(const struct service *s,
                                                   const struct block *block)
 {
-    if (s->inputs.feed_hold)
+    if (s->giving_up || takt_service_get_state(s) == PANEL_HELD)
         return PANEL_OVERRIDE_HELD;
     if (block != NULL && move_is_motion(&block->move) &&
         (block->move.overrides & OVERRIDE_FEED) == 0)

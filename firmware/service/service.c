@@ -101,7 +101,7 @@ void takt_service_hold(struct service *s, enum panel_hold reason)
         takt_controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
     else if (s->job == SERVICE_JOG)
         takt_service_give_up(s);
-    else if (s->hold == PANEL_HOLD_NONE || reason > PANEL_HOLD_PROGRAM)
+    else if (reason > s->hold)
         s->hold = reason;
 }
 
@@ -138,6 +138,12 @@ static void watch_panel(struct service *s)
     takt_service_hold(s, PANEL_HOLD_PANEL);
 }
 
+/* The axes rest in a hold. */
+static bool rests(const struct service *s)
+{
+    return s->hold != PANEL_HOLD_NONE && s->rest_cycles >= REST_CYCLES;
+}
+
 /*
  * A spindle that should turn and is lost stops the axes on their path, while they are still on it.
  */
@@ -165,9 +171,15 @@ static void watch_text(struct service *s)
 }
 
 /* Jogs and homing are no blocks of a program. */
-static bool ends_blocks(const struct service *s)
+static bool has_blocks(const struct service *s)
 {
-    return s->settings.single_block && (s->job == SERVICE_PROGRAM || s->job == SERVICE_MDI);
+    return s->job == SERVICE_PROGRAM || s->job == SERVICE_MDI;
+}
+
+/* The program cannot forbid this hold: only that of the operator, and not where the axes rest. */
+static bool holds_anyway(const struct service *s)
+{
+    return s->giving_up || s->hold > PANEL_HOLD_OPERATOR || rests(s);
 }
 
 static void set_inputs(struct service *s, const struct inputs *world)
@@ -177,15 +189,18 @@ static void set_inputs(struct service *s, const struct inputs *world)
     s->inputs = *world;
     s->inputs.feed_override_percent = 0.1 * (double)settings->feed_override;
     s->inputs.rapid_override_percent = 0.1 * (double)settings->rapid_override;
-    s->inputs.single_block = ends_blocks(s);
+    s->inputs.single_block = settings->single_block && has_blocks(s);
+    s->inputs.program_stop = has_blocks(s);
+    s->inputs.optional_stop = settings->optional_stop;
     s->inputs.feed_hold = s->hold != PANEL_HOLD_NONE || s->giving_up;
+    s->inputs.feed_stop = holds_anyway(s);
 }
 
 static void count_rest(struct service *s, const struct cycle_record *record)
 {
     if (record == NULL || !s->inputs.feed_hold)
         s->rest_cycles = record == NULL ? REST_CYCLES : 0;
-    else if (point_is_same(&record->cmd, &s->at))
+    else if (point_is_same(&record->cmd, &s->at) && takt_controller_is_settled(&s->controller))
         s->rest_cycles++;
     else
         s->rest_cycles = 0;
@@ -263,12 +278,10 @@ static void follow_controller(struct service *s)
 static void stop_after_block(struct service *s)
 {
     const struct cycle_record *record = takt_controller_get_record(&s->controller);
-    bool optional;
 
-    if (record == NULL || (s->job != SERVICE_PROGRAM && s->job != SERVICE_MDI))
+    if (record == NULL || !has_blocks(s))
         return;
-    if (takt_controller_passed_stop(&s->controller, &optional) &&
-        (!optional || s->settings.optional_stop))
+    if (takt_controller_passed_stop(&s->controller))
         takt_service_hold(s, PANEL_HOLD_PROGRAM);
     if (s->settings.single_block && record->landed && takt_motion_rests(&s->controller.motion) &&
         record->block != s->held_block) {
@@ -346,6 +359,13 @@ static enum panel_state state_of_job(enum service_job job)
     return PANEL_IDLE;
 }
 
+/* At rest or coming to it: not as long as the program forbids it. */
+static bool is_held(const struct service *s)
+{
+    return s->hold != PANEL_HOLD_NONE &&
+           (holds_anyway(s) || motion_may_hold(&s->controller.motion));
+}
+
 enum panel_state takt_service_get_state(const struct service *s)
 {
     if (s->emergency)
@@ -354,9 +374,10 @@ enum panel_state takt_service_get_state(const struct service *s)
         return PANEL_ALARM;
     if (takt_controller_get_state(&s->controller) == CONTROLLER_STARTING)
         return s->job == SERVICE_HOME ? PANEL_HOMING : PANEL_STARTING;
-    if (s->giving_up || takt_controller_get_state(&s->controller) == CONTROLLER_STOPPING)
+    if (s->giving_up || takt_controller_get_state(&s->controller) == CONTROLLER_STOPPING ||
+        drives_get_state(&s->controller.drives) == DRIVES_STOPPING)
         return PANEL_STOPPING;
-    return s->hold != PANEL_HOLD_NONE ? PANEL_HELD : state_of_job(s->job);
+    return is_held(s) ? PANEL_HELD : state_of_job(s->job);
 }
 
 void takt_service_set_health(struct service *s, const struct service_health *health)

@@ -233,7 +233,7 @@ static void start(struct spindle_sync *l)
 
 static void wait_for_spindle(struct spindle_sync *l, const struct motion_operator *wanted)
 {
-    if (wanted->hold || wanted->stop || wanted->wait) {
+    if (wanted->hold != MOTION_GOES || wanted->wait) {
         l->waited = 0;
     } else if (++l->stood > FEEDBACK_CYCLES && is_turning(l)) {
         start(l);
@@ -369,7 +369,7 @@ static bool may_hold(const struct spindle_sync *l)
 
 static void follow(struct spindle_sync *l, struct motion *m, const struct motion_operator *wanted)
 {
-    if ((wanted->hold || wanted->stop) && may_hold(l)) {
+    if (wanted->hold != MOTION_GOES && may_hold(l)) {
         l->phase = SPINDLE_SYNC_WAITS;
         return;
     }
@@ -379,7 +379,7 @@ static void follow(struct spindle_sync *l, struct motion *m, const struct motion
     } else if (l->taps && !l->out && !l->stopped) {
         fail(l, TAKT_ERROR_TAP_DEEP, l->config.tolerance_mm, 0.0);
     }
-    if (wanted->stop) {
+    if (wanted->hold == MOTION_STOPS) {
         takt_follower_brake(&l->follower);
         l->stopped = true;
     }

@@ -20,7 +20,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define REMOTE_MAGIC 0x334D5254U /* "TRM3" */
+#define REMOTE_MAGIC 0x344D5254U /* "TRM4" */
 
 /* In one cycle and direction: a boot sends one SDO a drive at a time, and drives answer in kind. */
 #define REMOTE_FRAMES_MAX 64
@@ -91,7 +91,7 @@ struct remote_outputs {
     struct classical_frame frame[REMOTE_FRAMES_MAX];
 };
 
-_Static_assert(sizeof(struct inputs) == 88, "as on every side");
+_Static_assert(sizeof(struct inputs) == 96, "as on every side");
 _Static_assert(sizeof(struct cycle_record) == 200, "as on every side");
 
 #endif

@@ -15,6 +15,7 @@ struct schedule {
     struct motion_operator now;
     double target;  /* of a ramp of the feed override */
     double change;  /* of it in a cycle */
+    bool hold;      /* by the operator */
     uint64_t until; /* the next event */
     uint64_t free;  /* cycles since anything was held */
 };
@@ -49,7 +50,8 @@ static inline void schedule_next(struct schedule *s, struct chain *c, uint64_t c
     const double what = chain_between(c, 0, 1);
 
     s->until = cycle + 1 + (uint64_t)chain_decades(c, 0, 2.8);
-    s->now.hold = what < 0.15;
+    s->hold = what < 0.15;
+    s->now.hold = s->hold ? MOTION_HOLD_ASKED : MOTION_GOES;
     s->now.rapid_ratio = what > 0.9 ? 0.0 : chain_between(c, 0.01, 1.0);
     s->target = what > 0.8 && what < 0.9 ? 0.0 : chain_between(c, 0.01, 1.2);
     s->change = what > 0.5 ? 1.2 : chain_decades(c, -4, -1);
@@ -61,7 +63,7 @@ static inline void schedule_follow(struct schedule *s, struct chain *c, uint64_t
         schedule_next(s, c, cycle);
     }
     s->now.feed_ratio += maths_clamp(s->target - s->now.feed_ratio, -s->change, s->change);
-    const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
+    const bool held = s->hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
 
     s->free = held ? 0 : s->free + 1;
 }
@@ -114,9 +116,11 @@ static inline void hands_follow(struct hands *h, struct motion *m)
         h->stop = h->stop_at > 0 && !h->stop && chain_between(&h->chance, 0, 1) < 0.2;
         h->stop_at = cycle + 1 + (uint64_t)chain_decades(&h->chance, 0, 2.5);
     }
-    now->stop = h->stop || cycle < h->waits_until;
+    const bool stops = h->stop || cycle < h->waits_until;
+
+    now->hold = stops ? MOTION_HOLDS : h->schedule.hold ? MOTION_HOLD_ASKED : MOTION_GOES;
     now->single_block = h->use == SINGLE_ON || h->single;
-    h->schedule.free = now->stop ? 0 : h->schedule.free;
+    h->schedule.free = stops ? 0 : h->schedule.free;
     if (h->reset_at > 0 && cycle >= h->reset_at && !h->reset && h->use != SINGLE_ON) {
         h->reset = true;
         takt_motion_end_here(m);

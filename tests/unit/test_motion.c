@@ -372,6 +372,61 @@ static void test_no_ceiling_is_made_while_both_are_in_use(void)
     TEST_ASSERT_GREATER_THAN_UINT(0, taking);
 }
 
+/* Behind a motion to 1, and in front of an event. */
+static void push_tool_change(void)
+{
+    struct move m;
+
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_TOOL;
+    m.tool_change = true;
+    push(MOVE_FEED, 1.0, 20.0);
+    takt_path_push(&path, &m);
+    push(MOVE_COOLANT, 0.0, 0.0);
+    push_end();
+    asked.tool_waits = true;
+}
+
+static void cycles(unsigned count)
+{
+    while (count-- > 0) {
+        TEST_ASSERT_EQUAL(MOTION_CYCLE, cycle());
+    }
+}
+
+static void test_in_a_hold_a_tool_change_that_has_begun_is_finished_and_nothing_more(void)
+{
+    push_tool_change();
+    cycles(500);
+    TEST_ASSERT_TRUE(motion.changes_tool);
+    asked.hold = MOTION_HOLD_ASKED;
+    cycles(100);
+    TEST_ASSERT_TRUE(motion.changes_tool);
+    asked.tool_waits = false;
+    cycles(1);
+    asked.tool_waits = true;
+    cycles(100);
+    TEST_ASSERT_FALSE(motion.changes_tool);
+    TEST_ASSERT_EQUAL_UINT32(2, path.first);
+    asked.hold = MOTION_GOES;
+    (void)run_to_the_end();
+}
+
+static void test_in_a_hold_no_tool_change_begins(void)
+{
+    push_tool_change();
+    do {
+        cycles(1);
+    } while (!motion.done);
+    asked.hold = MOTION_HOLD_ASKED;
+    cycles(100);
+    TEST_ASSERT_FALSE(motion.changes_tool);
+    TEST_ASSERT_EQUAL_UINT32(1, path.first);
+    asked.hold = MOTION_GOES;
+    cycles(1);
+    TEST_ASSERT_TRUE(motion.changes_tool);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -390,5 +445,7 @@ int main(void)
     RUN_TEST(test_a_starved_cycle_rests_and_goes_on);
     RUN_TEST(test_no_cycle_is_made_before_anything_is_planned);
     RUN_TEST(test_no_ceiling_is_made_while_both_are_in_use);
+    RUN_TEST(test_in_a_hold_a_tool_change_that_has_begun_is_finished_and_nothing_more);
+    RUN_TEST(test_in_a_hold_no_tool_change_begins);
     return UNITY_END();
 }

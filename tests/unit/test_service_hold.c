@@ -160,7 +160,7 @@ static void test_single_block_holds_at_the_end_of_each_motion(void)
     load("G21 F3000 G64\nG1 X10\nX20\nX30\nM2\n");
     must(REGISTER_SINGLE_BLOCK, 1);
     must(REGISTER_CYCLE_START, 1);
-    for (int i = 1; i <= 2; i++) {
+    for (int i = 1; i <= 3; i++) {
         expect_held_at(10.0 * i, PANEL_HOLD_SINGLE_BLOCK);
         TEST_ASSERT_EQUAL_DOUBLE(10.0 * i, service.at.at[AXIS_X]);
         must(REGISTER_CYCLE_START, 1);
@@ -207,6 +207,64 @@ static void test_a_line_leaves_the_spindle_turning_and_a_program_does_not(void)
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_COOLANT));
 }
 
+/* A cut that lets nobody hold it, and then one that does, to 200. */
+static void cut_unheld(void)
+{
+    load("G21 F3000\nM3 S6000\nM53 P0\nG1 X100\nM53 P1\nG1 X200\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    verified_cycles(500);
+}
+
+static void test_where_m53_forbids_the_hold_it_is_told_when_it_takes_effect(void)
+{
+    cut_unheld();
+    must(REGISTER_FEED_HOLD, 1);
+    while (service.at.at[AXIS_X] < 99) {
+        TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
+        TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_NONE, shown(REGISTER_HOLD_REASON));
+        TEST_ASSERT_EQUAL_INT64(PANEL_OVERRIDE_FOLLOWS, shown(REGISTER_OVERRIDE_REASON));
+        TEST_ASSERT_EQUAL_INT64(1, shown(REGISTER_FEED_HOLD));
+        verified_cycle();
+    }
+    (void)expect_rest();
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_OPERATOR, shown(REGISTER_HOLD_REASON));
+    TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 110);
+    expect_limits_kept();
+}
+
+static void test_reset_gives_up_what_m53_keeps_from_being_held(void)
+{
+    cut_unheld();
+    must(REGISTER_RESET, 1);
+    verified_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
+    TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 50);
+    expect_limits_kept();
+}
+
+static void test_a_silent_panel_stops_what_m53_keeps_from_being_held(void)
+{
+    cut_unheld();
+    must(REGISTER_WATCHDOG, 200);
+    (void)expect_rest();
+    TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 50);
+    TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_PANEL, shown(REGISTER_HOLD_REASON));
+    expect_limits_kept();
+}
+
+/* Also when the operator has asked for a hold before, which had no effect. */
+static void test_a_lost_spindle_stops_what_m53_keeps_from_being_held(void)
+{
+    cut_unheld();
+    must(REGISTER_FEED_HOLD, 1);
+    world.spindle.silent = true;
+    (void)expect_rest();
+    TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 50);
+    TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_SPINDLE, shown(REGISTER_HOLD_REASON));
+    expect_limits_kept();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -220,5 +278,9 @@ int main(void)
     RUN_TEST(test_single_block_holds_at_the_end_of_each_motion);
     RUN_TEST(test_m0_holds_and_m1_only_if_the_operator_wants_it);
     RUN_TEST(test_a_line_leaves_the_spindle_turning_and_a_program_does_not);
+    RUN_TEST(test_where_m53_forbids_the_hold_it_is_told_when_it_takes_effect);
+    RUN_TEST(test_reset_gives_up_what_m53_keeps_from_being_held);
+    RUN_TEST(test_a_silent_panel_stops_what_m53_keeps_from_being_held);
+    RUN_TEST(test_a_lost_spindle_stops_what_m53_keeps_from_being_held);
     return UNITY_END();
 }

@@ -223,7 +223,7 @@ static void test_a_stop_for_a_fault_is_obeyed_in_the_middle_of_a_thread(void)
     bench_start(&bench);
     while (bench_cycle(&bench) && bench.point.at[AXIS_Z] > -5.0) {
     }
-    bench.operator.stop = true;
+    bench.operator.hold = MOTION_STOPS;
     while (bench_cycle(&bench) && !takt_motion_rests(&bench.motion)) {
     }
     TEST_ASSERT_TRUE(bench.point.at[AXIS_Z] > -5.6);
