@@ -338,7 +338,7 @@ static void follow_reset(struct console *c, const struct panel_snapshot *now)
 /* A spindle that was stopped in a hold turns before the axes do. */
 static void follow_resume(struct console *c, const struct panel_snapshot *now)
 {
-    c->is_door = c->is_door && console_state(now) == PANEL_HELD;
+    c->is_door = c->is_door && now->value[REGISTER_FEED_HOLD] != 0;
     if (!c->resumes || (int32_t)(now->value[REGISTER_CYCLES] - c->turned) < 0 ||
         (now->value[REGISTER_SPINDLE_STATUS] & 1U) == 0)
         return;

@@ -123,6 +123,7 @@ enum panel_form {
 #define PANEL_NEVER       0U
 #define PANEL_WHEN_IDLE   PANEL_IN(PANEL_IDLE)
 #define PANEL_WHEN_HELD   PANEL_IN(PANEL_HELD)
+#define PANEL_WHEN_WORK   (PANEL_WHEN_HELD | PANEL_IN(PANEL_RUNNING) | PANEL_IN(PANEL_MDI))
 #define PANEL_WHEN_JOG    (PANEL_IN(PANEL_IDLE) | PANEL_IN(PANEL_JOGGING) | PANEL_IN(PANEL_STOPPING))
 #define PANEL_WHEN_MOTION (PANEL_WHEN_IDLE | PANEL_WHEN_HELD)
 
@@ -179,10 +180,10 @@ enum panel_form {
     PANEL_COIL(ROW, CYCLE_START, 0, PANEL_WHEN_MOTION, \
         "1: starts the program (MODE 0), or continues after a hold. Reads 1 while a program runs") \
     PANEL_COIL(ROW, FEED_HOLD, 1, PANEL_ANY, \
-        "1: stops on the path and holds; anyone may. Reads 1 while held. 0: no effect") \
+        "1: stops on the path and holds, where M53 P0 forbids that as soon as it may; anyone may. Reads 1 until RESUME. 0: no effect") \
     PANEL_COIL(ROW, RESUME, 2, PANEL_WHEN_HELD, "1: continues after a hold. Reads 0") \
     PANEL_COIL(ROW, SINGLE_BLOCK, 3, PANEL_ANY, \
-               "1: each motion of a program or a line ends in a hold, the current one too if there is room to brake") \
+               "1: each motion of a program or a line ends in a hold, the last and the current one too, that if there is room to brake") \
     PANEL_COIL(ROW, OPTIONAL_STOP, 4, PANEL_ANY, "1: M1 stops as M0 does") \
     PANEL_COIL(ROW, BLOCK_DELETE, 5, PANEL_WHEN_IDLE, "1: lines that begin with / are skipped") \
     PANEL_COIL(ROW, RESET, 6, PANEL_ANY, \
@@ -205,8 +206,8 @@ enum panel_form {
     PANEL_COIL(ROW, CORRECTION_WEAR, 21, PANEL_ANY, "1: likewise, tool wear and length") \
     PANEL_COIL(ROW, FLOOD, 22, PANEL_ANY, "1: flood coolant on, 0: off, until the program says otherwise") \
     PANEL_COIL(ROW, MIST, 23, PANEL_ANY, "1: mist coolant likewise") \
-    PANEL_COIL(ROW, SPINDLE_STOP, 24, PANEL_WHEN_HELD, \
-        "1: the spindle stands while the program is held; 0 and at speed again, before RESUME") \
+    PANEL_COIL(ROW, SPINDLE_STOP, 24, PANEL_WHEN_WORK, \
+        "1: with or after FEED_HOLD: the spindle stands from when the axes rest; 0 and at speed again, before RESUME") \
     PANEL_COIL(ROW, SETUP_TAKE, 25, PANEL_WHEN_IDLE, \
         "1: the part is set up as SETUP_X ... SETUP_TABLE say, as by G10 L13; more than correction has reserved of the axes is an alarm, and changes nothing. Reads 0")
 

@@ -28,6 +28,7 @@ static void begin_job(struct service *s, enum service_job job)
     s->hold = PANEL_HOLD_NONE;
     s->giving_up = false;
     s->rest_cycles = 0;
+    s->has_stood = false;
     s->has_starved = false;
     s->held_block = 0;
     s->streams = false;

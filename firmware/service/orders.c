@@ -30,11 +30,8 @@ static struct tool *selected_tool(const struct service *s)
 /* What stopped it must have been seen, and be gone. */
 static bool may_go_on(const struct service *s)
 {
-    const struct spindle_feedback *spindle = &s->inputs.spindle;
-    const bool is_back = !spindle->silent && !spindle->tripped && spindle->at_speed;
-
     return s->alarm == PANEL_ALARM_NONE && !s->settings.spindle_stop &&
-           (s->hold != PANEL_HOLD_SPINDLE || is_back);
+           takt_service_spindle_is_back(s);
 }
 
 static enum panel_verdict verdict_on(bool allowed)
@@ -85,6 +82,8 @@ static enum panel_verdict check_coil(const struct service *s, enum panel_id id)
         return check_start(s);
     if (id == REGISTER_RESUME)
         return verdict_on(may_go_on(s));
+    if (id == REGISTER_SPINDLE_STOP)
+        return verdict_on(s->hold != PANEL_HOLD_NONE);
     if (id == REGISTER_MDI_START)
         return verdict_on(s->settings.mode == PANEL_MODE_MDI && s->alarm == PANEL_ALARM_NONE);
     if (id == REGISTER_SETUP_TAKE)
@@ -143,6 +142,7 @@ static void go_on(struct service *s)
 {
     s->hold = PANEL_HOLD_NONE;
     s->rest_cycles = 0;
+    s->has_stood = false;
 }
 
 static void acknowledge(struct service *s)

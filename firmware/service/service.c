@@ -14,6 +14,9 @@
  */
 #define REST_CYCLES 3
 
+/* What is known of the spindle is older than what it is told by less than this. */
+#define FEEDBACK_CYCLES 4
+
 #define MS_PER_US 1e-3
 
 struct controller_config takt_service_controller_config(const struct service *s)
@@ -144,6 +147,21 @@ static bool rests(const struct service *s)
     return s->hold != PANEL_HOLD_NONE && s->rest_cycles >= REST_CYCLES;
 }
 
+/* SPINDLE_STOP is in effect. */
+static bool stops_spindle(const struct service *s)
+{
+    return s->settings.spindle_stop && rests(s);
+}
+
+bool takt_service_spindle_is_back(const struct service *s)
+{
+    const struct spindle_feedback *spindle = &s->inputs.spindle;
+
+    return !s->has_stood ||
+           (!spindle->silent && !spindle->tripped && (spindle->at_speed || !s->tells_speed) &&
+            s->cycles - s->stood_cycle > FEEDBACK_CYCLES);
+}
+
 /*
  * A spindle that should turn and is lost stops the axes on their path, while they are still on it.
  */
@@ -157,6 +175,7 @@ static void watch_spindle(struct service *s)
     raise_simple(s, PANEL_ALARM_SPINDLE,
                  spindle->silent ? TAKT_ERROR_SPINDLE_SILENT : TAKT_ERROR_SPINDLE_TRIPPED, 0.0);
     takt_service_hold(s, PANEL_HOLD_SPINDLE);
+    s->has_stood = true;
 }
 
 /*
@@ -187,6 +206,11 @@ static void set_inputs(struct service *s, const struct inputs *world)
     const struct service_settings *settings = &s->settings;
 
     s->inputs = *world;
+    s->tells_speed = s->tells_speed || world->spindle.at_speed;
+    if (stops_spindle(s)) {
+        s->has_stood = true;
+        s->stood_cycle = s->cycles;
+    }
     s->inputs.feed_override_percent = 0.1 * (double)settings->feed_override;
     s->inputs.rapid_override_percent = 0.1 * (double)settings->rapid_override;
     s->inputs.single_block = settings->single_block && has_blocks(s);
@@ -328,7 +352,7 @@ struct outputs takt_service_get_outputs(const struct service *s)
 {
     struct outputs outputs = *takt_controller_get_outputs(&s->controller);
 
-    if (s->settings.spindle_stop)
+    if (stops_spindle(s))
         outputs.spindle_speed_rpm = 0.0;
     outputs.spindle_speed_rpm *= 0.001 * (double)s->settings.spindle_override;
     return outputs;

@@ -43,5 +43,7 @@ struct controller_config takt_service_controller_config(const struct service *s)
 void takt_service_recover(struct service *s, bool home);
 void takt_service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text);
 void takt_service_hold(struct service *s, enum panel_hold reason);
+/* The spindle has neither stood nor been lost in this hold, or is back at speed. */
+bool takt_service_spindle_is_back(const struct service *s);
 
 #endif

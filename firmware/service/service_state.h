@@ -64,6 +64,9 @@ struct service {
     bool emergency;        /* the button is in */
     bool jog_is_negative;  /* of a jog */
     unsigned rest_cycles;  /* cycles in which no axis has been moved */
+    bool tells_speed;      /* the spindle's drive has once said that it is at speed */
+    bool has_stood;        /* the spindle has been stopped or lost in this hold */
+    uint32_t stood_cycle;  /* the last one in which it was stopped */
     uint32_t quiet_cycles; /* since the panel in control was heard */
 
     enum panel_alarm alarm; /* latched until acknowledged */

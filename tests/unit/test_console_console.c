@@ -258,21 +258,6 @@ static void test_the_spindle_stands_in_a_hold_and_turns_before_the_axes_go_on(vo
     settle();
 }
 
-static void test_a_door_holds_the_axes_with_the_spindle_off(void)
-{
-    give("M3 S1000\nG1 X50 F3000\n");
-    steps(600);
-    give("\x84");
-    steps(300);
-    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 0.0);
-    expect_status("<Door:0|");
-    give("~");
-    steps(50);
-    TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 1000.0);
-    settle();
-    TEST_ASSERT_EQUAL_DOUBLE(50.0, place(AXIS_X));
-}
-
 static void test_settings_are_read_and_only_those_of_reports_are_set(void)
 {
     forget();
@@ -479,7 +464,6 @@ int main(void)
     RUN_TEST(test_a_jog_is_cancelled_at_once_and_when_its_sender_goes);
     RUN_TEST(test_overrides_are_those_of_the_panel);
     RUN_TEST(test_the_spindle_stands_in_a_hold_and_turns_before_the_axes_go_on);
-    RUN_TEST(test_a_door_holds_the_axes_with_the_spindle_off);
     RUN_TEST(test_settings_are_read_and_only_those_of_reports_are_set);
     RUN_TEST(test_it_tells_what_it_has_been_built_with_in_the_letters_of_grbl);
     RUN_TEST(test_offsets_are_told_and_set_to_zero);

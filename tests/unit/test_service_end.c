@@ -105,6 +105,25 @@ static void test_asked_twice_the_drives_brake_at_once(void)
     expect_drives(CIA402_SWITCH_ON_DISABLED);
 }
 
+static void test_on_the_way_to_the_end_an_emergency_stop_is_obeyed(void)
+{
+    run_into_motion();
+    ending_ask(&ending, &service.controller, ENDING_ON_PATH);
+    verified_cycles(5);
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, takt_service_get_state(&service));
+    must(REGISTER_FEED_HOLD, 1);
+    verified_cycles(5);
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, takt_service_get_state(&service));
+    const double from_mm = virtual_drive_get_position_mm(&drives.drive[0]);
+    must(REGISTER_EMERGENCY_STOP, 1);
+    TEST_ASSERT_EQUAL_INT(PANEL_EMERGENCY, takt_service_get_state(&service));
+    (void)end(ENDING_ON_PATH);
+    TEST_ASSERT_TRUE(virtual_drive_get_position_mm(&drives.drive[0]) - from_mm <
+                     3.0); /* v2/2a is 2.5 */
+    TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_EMERGENCY, shown(REGISTER_ALARM));
+    expect_drives(CIA402_SWITCH_ON_DISABLED);
+}
+
 static void test_at_rest_the_end_takes_a_few_cycles(void)
 {
     TEST_ASSERT_TRUE(end(ENDING_ON_PATH) < 50);
@@ -177,6 +196,7 @@ int main(void)
     RUN_TEST(test_spindle_and_coolant_are_off_at_the_end);
     RUN_TEST(test_the_spindle_turns_as_long_as_the_axes_are_on_the_path);
     RUN_TEST(test_asked_twice_the_drives_brake_at_once);
+    RUN_TEST(test_on_the_way_to_the_end_an_emergency_stop_is_obeyed);
     RUN_TEST(test_at_rest_the_end_takes_a_few_cycles);
     RUN_TEST(test_drives_are_left_switched_on_where_the_machine_file_says_so);
     RUN_TEST(test_drives_that_are_being_started_are_left_off);
