@@ -61,6 +61,9 @@ void takt_panel_client_leave(struct panel_client *client);
 enum panel_refusal takt_panel_client_order(struct panel_client *client,
                                            const struct panel_order *order);
 
+/* To hold the feed and to stop in an emergency nobody needs leave, at any time. */
+bool takt_panel_is_for_everybody(const struct panel_order *order);
+
 /* The client writes PASSWORD. */
 enum panel_refusal takt_panel_client_unlock(struct panel_client *client, uint32_t password);
 

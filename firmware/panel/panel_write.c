@@ -128,16 +128,15 @@ static bool is_order_to(const struct panel_order_item *item, enum panel_id id)
     return item->id == id && item->value != 0;
 }
 
-/* To hold the feed and to stop in an emergency nobody needs leave. */
-static bool is_for_everybody(const struct panel_request *r)
+bool takt_panel_is_for_everybody(const struct panel_order *order)
 {
-    for (unsigned i = 0; i < r->order.count; i++) {
-        const struct panel_order_item *item = &r->order.item[i];
+    for (unsigned i = 0; i < order->count; i++) {
+        const struct panel_order_item *item = &order->item[i];
 
         if (!is_order_to(item, REGISTER_FEED_HOLD) && !is_order_to(item, REGISTER_EMERGENCY_STOP))
             return false;
     }
-    return r->order.count > 0;
+    return order->count > 0;
 }
 
 /*
@@ -182,7 +181,7 @@ static enum panel_refusal check_rights(const struct panel_request *r)
 {
     const struct panel *panel = r->client->panel;
 
-    if (is_for_everybody(r))
+    if (takt_panel_is_for_everybody(&r->order))
         return PANEL_REFUSAL_NONE;
     if (r->has_owner && panel->owner != r->client && !r->has_password)
         return PANEL_REFUSAL_CONTROL;

@@ -221,10 +221,12 @@ static void tell_drives(struct serving *s)
                                                s->session.options->quiet);
 }
 
-/* Once it ends nothing is begun any more. */
+/* Once it ends nothing is begun any more, only stopped. */
 static enum panel_verdict give_order(struct serving *s, const struct panel_order *order)
 {
-    return s->ending.way == ENDING_NOT ? takt_service_order(&s->service, order) : PANEL_WRONG_STATE;
+    return s->ending.way == ENDING_NOT || takt_panel_is_for_everybody(order)
+               ? takt_service_order(&s->service, order)
+               : PANEL_WRONG_STATE;
 }
 
 /* An order is answered when a snapshot shows what came of it. */

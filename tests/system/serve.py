@@ -223,6 +223,21 @@ def check_emergency():
     service.stop()
 
 
+def check_emergency_at_the_end():
+    """SIGTERM: on the way to rest nothing is begun any more, but everybody may stop at once."""
+    service, client = ready("--set", "axis.X.max_acceleration_mm_s2=50", "--set", "axis.X.max_jerk_mm_s3=100")
+    client.upload(b"G21 G90 F6000\nG1 X400\nM2\n")
+    client.put("CYCLE_START", 1)
+    client.wait_above("FEED", 3000)
+    service.process.terminate()
+    client.wait_for("STATE", p.STOPPING)
+    t.check(client.refusal("SINGLE_BLOCK", 1) == (4, 1), "a service that ends takes no orders")
+    t.check(client.refusal("FEED_HOLD", 1) == (0, 0), "but a hold")
+    client.put("EMERGENCY_STOP", 1)
+    t.check(client.counts("STATE") == p.EMERGENCY, "and an emergency stop")
+    t.check(service.process.wait(p.PATIENCE_S) == 0, "it has ended in order")
+
+
 def check_rights():
     service, one = ready("--set", "panel.password=4711")
     two = service.client()
