@@ -1,5 +1,6 @@
 #include "cli/hint.h"
 
+#include "cli/found_word.h"
 #include "translation/codes.h"
 #include "words/line.h"
 
@@ -351,7 +352,9 @@ void hint_write(const struct diagnostic *d, const char *line, size_t length, siz
     if (write_value(d, text) || write_global(d, text) || write_tool(d, text) ||
         write_name(d, line, length, at, text) || write_letter(d, text))
         return;
-    if (hint != NULL)
+    if (d->code == TAKT_ERROR_OWORD_UNCLOSED && !found_word_is_oword(d->word))
+        write(text, "its end is missing: ENDIF, ENDLOOP, END1 or what else goes with it");
+    else if (hint != NULL)
         write(text, hint);
     else if (d->code == TAKT_ERROR_WORD_UNKNOWN)
         write_code(d, text);

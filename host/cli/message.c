@@ -1,5 +1,6 @@
 #include "cli/message.h"
 
+#include "cli/found_word.h"
 #include "cli/hint.h"
 
 #include <stdarg.h>
@@ -145,6 +146,8 @@ static bool message_goes_on(const char *line, size_t length, const char *word)
     size_t at = 0;
 
     for (; *word != '\0'; word++) {
+        if (*word == ' ')
+            continue;
         while (at < length && (line[at] == ' ' || line[at] == '\t'))
             at++;
         if (at == length || message_lower(line[at++]) != message_lower(*word))
@@ -211,18 +214,33 @@ static void message_diagnostic(const char *kind, const struct program_text *prog
     (void)fputs(cure, stderr);
 }
 
+/* In the words of the program as it is found. */
+static struct diagnostic message_restore(const struct program_text *program,
+                                         const struct diagnostic *diagnostic)
+{
+    struct diagnostic d = *diagnostic;
+    char line[MESSAGE_LINE_MAX];
+
+    if (program->pieces > 0 && d.line > 0)
+        found_word_restore(line, program_text_line(program, d.line, 0, line, sizeof line), &d);
+    return d;
+}
+
 void message_program_error(const struct program_text *program, const struct diagnostic *diagnostic)
 {
+    const struct diagnostic d = message_restore(program, diagnostic);
     char cure[HINT_MAX];
 
-    message_cure(program, diagnostic, message_column(program, diagnostic), cure);
-    message_diagnostic("error", program, diagnostic, cure);
+    message_cure(program, &d, message_column(program, &d), cure);
+    message_diagnostic("error", program, &d, cure);
 }
 
 void message_program_warning(const struct program_text *program,
                              const struct diagnostic *diagnostic)
 {
-    message_diagnostic("warning", program, diagnostic, "");
+    const struct diagnostic d = message_restore(program, diagnostic);
+
+    message_diagnostic("warning", program, &d, "");
 }
 
 void message_from_program(const struct program_text *program, uint32_t line, const char *text)
