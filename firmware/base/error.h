@@ -68,6 +68,7 @@
     X(CALL_ARGUMENTS, "'%w' has more than %v arguments")                                           \
     X(CALL_P_MISSING, "'%w' needs P, the number of the program to call")                           \
     X(JUMP_BACK, "'%w' has to go back in the text, which a stream cannot")                         \
+    X(JUMP_NOWHERE, "'%w' goes to a label that no line has, outside of other blocks")              \
     X(CIRCLE, "the program is in an endless loop: %v lines without a move")                        \
     X(ENDLESS, "the program does not end: %v lines have been read again")                          \
     X(MODES_NOT_SAVED, "'%w' finds no saved modes: no M70 or M73 in this call")                    \

@@ -314,13 +314,16 @@ static bool leave_round(struct program *p, const struct oword *o)
 
 /*
  * O<place> GOTO [line] [blocks]: what a translator makes of a jump. The line begins at this place
- * of the text, inside so many blocks of this call.
+ * of the text, inside so many blocks of this call. Without them there is no such line.
  */
 static bool take_goto(struct program *p, const struct oword *o)
 {
     double line;
     double blocks;
 
+    if (p->lexer.at == p->lexer.length) {
+        return takt_oword_error(p, TAKT_ERROR_JUMP_NOWHERE, o, 0.0);
+    }
     if (!takt_expression_read(p, &line) || !takt_expression_read(p, &blocks)) {
         return false;
     }

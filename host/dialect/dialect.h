@@ -63,10 +63,10 @@ struct dialect_guess dialect_guess_end(const struct dialect_detector *d);
 
 /*
  * The whole of a program, of length bytes. Its lines keep their numbers: where one becomes several,
- * the further ones begin with DIALECT_GOES_ON, which the interpreter does not count. False: out of
- * memory.
+ * the further ones begin with DIALECT_GOES_ON, which the interpreter does not count. called: it is
+ * the subprogram of this name; NULL: the program itself. False: out of memory.
  */
-bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
-                       size_t length, struct dialect_result *result);
+bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *called,
+                       const char *bytes, size_t length, struct dialect_result *result);
 
 #endif

@@ -135,7 +135,7 @@ static void take_goto(struct translator *t, unsigned at)
     if (!read_target(&t->line, &t->line.word[at], &number))
         return;
     line_read(&t->line, "", 0);
-    jumps_go_to(t, number);
+    jumps_go_to(t, number, JUMP_ANYWHERE);
 }
 
 static void take_alarm(struct translator *t);

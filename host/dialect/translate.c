@@ -395,8 +395,8 @@ static bool is_absolute(const struct translator *t)
     return dialect_guess_end(&guess.detector).absolute;
 }
 
-bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
-                       size_t length, struct dialect_result *result)
+bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *called,
+                       const char *bytes, size_t length, struct dialect_result *result)
 {
     struct translator *t = calloc(1, sizeof *t);
 
@@ -405,6 +405,7 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
         return false;
     t->dialect = dialect;
     t->codes = codes;
+    t->called = called;
     t->result = result;
     t->source = bytes;
     t->source_length = length;
@@ -417,7 +418,7 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     each_line(bytes, length, translate_line, t);
     if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_finish(t);
-    (void)jumps_finish(t);
+    jumps_finish(t);
     dialect_text_free(&t->before);
     dialect_text_free(&t->behind);
     free(t->label);

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 /* ---- what a program is written for ---- */
@@ -134,6 +135,7 @@ static void add_label(struct labels *labels, const char *name)
 struct junction {
     const struct program_front *front;
     struct program_text *text;
+    enum dialect dialect; /* of the program */
     struct dialect_text bytes;
     uint32_t lines; /* of bytes */
     struct labels defined, called;
@@ -253,12 +255,12 @@ static void tell_notes(const char *name, enum dialect dialect, const struct dial
 }
 
 /* What has been found, in takt's own language. False after a message. */
-static bool translate(const struct junction *j, const char *name, enum dialect dialect,
+static bool translate(const struct junction *j, const char *called, enum dialect dialect,
                       const struct text *found, struct dialect_text *bytes)
 {
     static _Thread_local struct dialect_result result;
     const bool good =
-        dialect_translate(dialect, j->front->codes, found->bytes, found->length, &result);
+        dialect_translate(dialect, j->front->codes, called, found->bytes, found->length, &result);
 
     *bytes = result.text;
     if (!good) {
@@ -266,12 +268,8 @@ static bool translate(const struct junction *j, const char *name, enum dialect d
         return false;
     }
     if (!j->front->quiet)
-        tell_notes(name, dialect, &result);
-    if (result.wrong_line != 0)
-        message_error(name, result.wrong_line, 1,
-                      "GOTO %u: no line of this program that is in no other loop has this N",
-                      result.wrong_number);
-    return result.wrong_line == 0;
+        tell_notes(found->name, dialect, &result);
+    return true;
 }
 
 /* The program has ended before what follows; nothing of it is executed on the way. */
@@ -281,6 +279,16 @@ static void end_program(struct junction *j)
 
     if (j->text->pieces == 2) /* the program, and the first of the others */
         add_bytes(j, end, sizeof end);
+}
+
+/* A subprogram of Siemens need not have anything that tells of it. */
+static enum dialect dialect_of(const struct junction *j, const char *path,
+                               const struct dialect_guess *guess)
+{
+    const size_t length = strlen(path);
+    const bool spf = length > 4 && strcasecmp(path + length - 4, ".spf") == 0;
+
+    return spf && guess->dialect == DIALECT_LINUXCNC ? j->dialect : guess->dialect;
 }
 
 static bool bring_in(struct junction *j, const char *label)
@@ -301,7 +309,8 @@ static bool bring_in(struct junction *j, const char *label)
         text_free(&found);
         return false;
     }
-    const bool good = translate(j, path, guess.dialect, &found, &bytes);
+    const char *called = label[0] == '<' ? label + 1 : label;
+    const bool good = translate(j, called, dialect_of(j, path, &guess), &found, &bytes);
 
     if (good) {
         end_program(j);
@@ -367,7 +376,8 @@ static bool join(struct junction *j, enum dialect dialect)
         text_free(&found);
         return false;
     }
-    const bool good = translate(j, j->text->name, dialect, &found, &bytes);
+    j->dialect = dialect;
+    const bool good = translate(j, NULL, dialect, &found, &bytes);
 
     if (good)
         take_lines(j, &bytes, true);

@@ -1,8 +1,7 @@
 /*
- * Flow, subprograms and orders of Siemens' language (siemens.c).
+ * Flow of Siemens' language (siemens.c): labels, jumps, branches and loops.
  */
 #include "siemens/scan.h"
-#include "siemens/siemens.h"
 #include "translation/jumps.h"
 
 #include <stdio.h>
@@ -13,54 +12,102 @@
 #define REPEAT_LABEL 99000000U
 /* Jumps go to names: their numbers begin behind those of blocks. */
 #define NAME_NUMBER 100000000U
+/* Parameters behind those of R count the rounds of REPEAT with a label. */
+#define ROUNDS_FIRST 1100U
+#define ROUNDS_MAX   1000U
 
-/* ---- flow ---- */
+/* ---- jumps ---- */
 
-static uint32_t number_of(struct translator *t, const char *name)
+static uint32_t number_of(struct scan *s, const char *name)
 {
+    struct translator *t = s->t;
+
     for (unsigned i = 0; i < t->names; i++) {
         if (strcmp(t->name[i], name) == 0)
             return NAME_NUMBER + i;
     }
-    if (t->names == TRANSLATE_PROGRAMS_MAX)
-        return NAME_NUMBER + TRANSLATE_PROGRAMS_MAX;
+    s->failed = s->failed || t->names == TRANSLATE_NAMES_MAX;
+    if (s->failed)
+        return 0;
     (void)snprintf(t->name[t->names], sizeof t->name[0], "%s", name);
     return NAME_NUMBER + t->names++;
 }
 
-static void clear(struct translator *t)
+/* N100, or a name. */
+static uint32_t target_of(struct scan *s, const char *name)
 {
-    (void)line_read(&t->line, "", 0);
+    const bool numbered = name[0] == 'N' && scan_is_digit(name[1]) &&
+                          strspn(name + 1, "0123456789") == strlen(name + 1);
+
+    return numbered ? (uint32_t)strtoul(name + 1, NULL, 10) : number_of(s, name);
 }
 
+bool scan_label(struct scan *s)
+{
+    const char *before = s->at;
+    char name[NAME_MAX_];
+
+    if (!scan_name(s, name))
+        return false;
+    const bool named = *s->at == ':' && s->at[1] != '=';
+
+    if (named || (name[0] == 'N' && scan_is_digit(name[1]) &&
+                  strspn(name + 1, "0123456789") == strlen(name + 1))) {
+        s->at += named ? 1 : 0;
+        jumps_add_label(s->t, target_of(s, name));
+        return !s->failed;
+    }
+    s->at = before;
+    return false;
+}
+
+/* GOTOC and GOTOS are not known. */
 static bool take_jump(struct scan *s, const char *name)
 {
     char target[NAME_MAX_];
 
-    if (strcmp(name, "GOTOF") != 0 && strcmp(name, "GOTOB") != 0 && strcmp(name, "GOTO") != 0)
+    if (strncmp(name, "GOTO", 4) != 0)
         return false;
-    s->failed = s->failed || !scan_name(s, target);
+    const enum jump_way way = name[4] == 'F'   ? JUMP_FORWARD
+                              : name[4] == 'B' ? JUMP_BACK
+                                               : JUMP_ANYWHERE;
+
+    s->failed = s->failed || (name[4] != '\0' && (way == JUMP_ANYWHERE || name[5] != '\0')) ||
+                !scan_name(s, target);
+    const uint32_t number = s->failed ? 0 : target_of(s, target);
+
     if (s->failed)
         return true;
-    clear(s->t);
-    const bool numbered = target[0] == 'N' && scan_is_digit(target[1]);
-
-    jumps_go_to(s->t, numbered ? (uint32_t)strtoul(target + 1, NULL, 10) : number_of(s->t, target));
+    scan_clear(s);
+    jumps_go_to(s->t, number, way);
     return true;
 }
 
-static uint32_t open_block(struct translator *t, uint32_t first)
-{
-    const uint32_t label = first + t->number % 1000000U;
+/* ---- blocks ---- */
 
-    if (t->blocks < TRANSLATE_LINES_MAX)
+static uint32_t label_of(const struct translator *t, uint32_t first)
+{
+    return first + t->number % 1000000U;
+}
+
+static uint32_t open_block(struct scan *s, uint32_t first)
+{
+    struct translator *t = s->t;
+    const uint32_t label = label_of(t, first);
+
+    s->failed = s->failed || t->blocks == TRANSLATE_BLOCKS_MAX;
+    if (!s->failed)
         t->block[t->blocks++] = label;
+    t->depth = t->blocks;
     return label;
 }
 
 static uint32_t close_block(struct translator *t)
 {
-    return t->blocks > 0 ? t->block[--t->blocks] : 0;
+    const uint32_t label = t->blocks > 0 ? t->block[--t->blocks] : 0;
+
+    t->depth = t->blocks;
+    return label;
 }
 
 static void take_if(struct scan *s)
@@ -75,26 +122,26 @@ static void take_if(struct scan *s)
 
     if (s->failed)
         return;
-    clear(t);
+    scan_clear(s);
     if (!jumps) {
         s->at = before;
-        translate_add(&t->before, "o%u if %s", (unsigned)open_block(t, BLOCK_LABEL), s->out);
+        translate_add(&t->before, "o%u if %s", (unsigned)open_block(s, BLOCK_LABEL), s->out);
         return;
     }
-    translate_add(&t->behind, "o%u if %s", (unsigned)(BLOCK_LABEL + t->number % 1000000U), s->out);
+    translate_add(&t->behind, "o%u if %s", (unsigned)label_of(t, BLOCK_LABEL), s->out);
     (void)take_jump(s, name);
-    translate_add(&t->behind, "o%u endif", (unsigned)(BLOCK_LABEL + t->number % 1000000U));
+    translate_add(&t->behind, "o%u endif", (unsigned)label_of(t, BLOCK_LABEL));
 }
 
 static void take_for(struct scan *s)
 {
     struct translator *t = s->t;
     char name[NAME_MAX_];
-    char variable[NAME_MAX_];
+    char variable[NAME_MAX_ + 16];
 
     s->failed = s->failed || !scan_name(s, name) || !scan_take(s, "=");
     scan_operand(s, name);
-    (void)snprintf(variable, sizeof variable, "%.31s", s->out);
+    (void)snprintf(variable, sizeof variable, "%.*s", (int)s->length, s->out);
     s->length = 0;
     scan_brackets(s);
     s->failed = s->failed || !scan_name(s, name) || strcmp(name, "TO") != 0;
@@ -103,29 +150,26 @@ static void take_for(struct scan *s)
     translate_add(&t->before, "%s=[%s-1]", variable, s->out);
     s->length = 0;
     scan_brackets(s);
-    translate_add(&t->before, "o%u while [%s LT %s]", (unsigned)open_block(t, REPEAT_LABEL),
+    translate_add(&t->before, "o%u while [%s LT %s]", (unsigned)open_block(s, REPEAT_LABEL),
                   variable, s->out);
     translate_add(&t->before, "%s=[%s+1]", variable, variable);
-    t->depth++;
-    clear(t);
+    scan_clear(s);
 }
 
 static void take_loop(struct scan *s, const char *condition)
 {
     struct translator *t = s->t;
 
-    t->depth++;
-    translate_add(&t->before, "o%u while %s", (unsigned)open_block(t, REPEAT_LABEL), condition);
-    clear(t);
+    translate_add(&t->before, "o%u while %s", (unsigned)open_block(s, REPEAT_LABEL), condition);
+    scan_clear(s);
 }
 
 static void end_loop(struct scan *s)
 {
     struct translator *t = s->t;
 
-    t->depth -= t->depth > 0 ? 1 : 0;
     translate_add(&t->behind, "o%u endwhile", (unsigned)close_block(t));
-    clear(t);
+    scan_clear(s);
 }
 
 /* REPEAT ... UNTIL a */
@@ -136,16 +180,15 @@ static void take_until(struct scan *s)
     scan_brackets(s);
     if (s->failed)
         return;
-    t->depth -= t->depth > 0 ? 1 : 0;
     translate_add(&t->behind, "o%u while [1-%s]", (unsigned)close_block(t), s->out);
-    clear(t);
+    scan_clear(s);
 }
 
 /* CASE(a) OF 1 GOTOF B 2 GOTOF C DEFAULT GOTOF D */
 static void take_case(struct scan *s)
 {
     struct translator *t = s->t;
-    const unsigned label = BLOCK_LABEL + t->number % 1000000U;
+    const unsigned label = label_of(t, BLOCK_LABEL);
     char asked[LINE_MAX_BYTES + 1];
     char name[NAME_MAX_];
 
@@ -164,15 +207,64 @@ static void take_case(struct scan *s)
             return;
         translate_add(&t->behind, "o%u if [%s EQ %s]", label, rest ? "0" : asked,
                       rest ? "0" : s->out);
-        s->failed = !scan_name(s, name) || !take_jump(s, name);
+        s->failed = !scan_name(s, name) || !take_jump(s, name) || s->failed;
         translate_add(&t->behind, "o%u endif", label);
     }
 }
 
-static bool take_flow(struct scan *s, const char *name)
+/*
+ * REPEAT NAME P=3: from the label to here three times more. The rounds are counted by a parameter
+ * that is 0 before and behind.
+ */
+static void take_section_again(struct scan *s)
+{
+    struct translator *t = s->t;
+    const unsigned counter = ROUNDS_FIRST + t->repeats;
+    char target[NAME_MAX_] = "";
+    char name[NAME_MAX_] = "";
+
+    s->failed = s->failed || !scan_name(s, target) || t->repeats == ROUNDS_MAX;
+    s->length = 0;
+    if (scan_is_end(s))
+        scan_put(s, "1");
+    else if (scan_name(s, name) && strcmp(name, "P") == 0 && scan_take(s, "="))
+        scan_brackets(s);
+    else if (name[0] == 'P' && scan_is_digit(name[1]))
+        scan_put(s, "%s", name + 1);
+    else
+        s->failed = true;
+    scan_skip(s);
+    const uint32_t number = s->failed ? 0 : target_of(s, target);
+
+    s->failed = s->failed || !scan_is_end(s);
+    if (s->failed)
+        return;
+    t->repeats++;
+    scan_clear(s);
+    translate_add(&t->behind, "#%u=[#%u+1]", counter, counter);
+    translate_add(&t->behind, "o%u if [#%u LE %s]", (unsigned)label_of(t, BLOCK_LABEL), counter,
+                  s->out);
+    jumps_go_to(t, number, JUMP_BACK);
+    translate_add(&t->behind, "o%u endif", (unsigned)label_of(t, BLOCK_LABEL));
+    translate_add(&t->behind, "#%u=0", counter);
+}
+
+void scan_pass_block(struct scan *s, const char *name)
+{
+    const bool branches = strcmp(name, "IF") == 0 && strstr(s->t->line.text, "GOTO") == NULL;
+
+    s->failed = false;
+    if (branches)
+        translate_add(&s->t->behind, "o%u if [0]", (unsigned)open_block(s, BLOCK_LABEL));
+    else if (strcmp(name, "WHILE") == 0 || strcmp(name, "FOR") == 0)
+        translate_add(&s->t->behind, "o%u while [0]", (unsigned)open_block(s, REPEAT_LABEL));
+}
+
+bool scan_flow(struct scan *s, const char *name)
 {
     struct translator *t = s->t;
 
+    scan_skip(s);
     if (take_jump(s, name))
         return true;
     if (strcmp(name, "IF") == 0) {
@@ -191,282 +283,20 @@ static bool take_flow(struct scan *s, const char *name)
                strcmp(name, "ENDLOOP") == 0) {
         end_loop(s);
     } else if (strcmp(name, "REPEAT") == 0 && scan_is_end(s)) {
-        t->depth++;
-        translate_add(&t->before, "o%u do", (unsigned)open_block(t, REPEAT_LABEL));
-        clear(t);
+        translate_add(&t->before, "o%u do", (unsigned)open_block(s, REPEAT_LABEL));
+        scan_clear(s);
+    } else if (strcmp(name, "REPEAT") == 0) {
+        take_section_again(s);
     } else if (strcmp(name, "UNTIL") == 0) {
         take_until(s);
     } else if (strcmp(name, "ELSE") == 0 && t->blocks > 0) {
         translate_add(&t->behind, "o%u else", (unsigned)t->block[t->blocks - 1]);
-        clear(t);
+        scan_clear(s);
     } else if (strcmp(name, "ENDIF") == 0) {
         translate_add(&t->behind, "o%u endif", (unsigned)close_block(t));
-        clear(t);
+        scan_clear(s);
     } else {
         return false;
     }
     return true;
-}
-
-/* ---- subprograms ---- */
-
-static void end_subprogram(struct translator *t)
-{
-    if (t->subprogram[0] != '\0')
-        translate_add(&t->before, "o<%s> endsub", t->subprogram);
-    t->subprogram[0] = '\0';
-}
-
-static void lower(char *text)
-{
-    for (; *text != '\0'; text++)
-        *text = line_lower(*text);
-}
-
-static void begin_subprogram(struct translator *t, const char *name)
-{
-    end_subprogram(t);
-    (void)snprintf(t->subprogram, sizeof t->subprogram, "%.31s", name);
-    lower(t->subprogram);
-    translate_add(&t->before, "o<%s> sub", t->subprogram);
-}
-
-/* %_N_L100_SPF, and the same of a main program. */
-static bool take_section(struct translator *t, const char *text)
-{
-    char name[NAME_MAX_];
-    struct scan s = {.t = t, .at = text + 4};
-
-    if (strncmp(text, "%_N_", 4) != 0 || !scan_name(&s, name))
-        return false;
-    const size_t length = strlen(name);
-
-    end_subprogram(t);
-    if (length > 4 && strcmp(&name[length - 4], "_SPF") == 0) {
-        name[length - 4] = '\0';
-        begin_subprogram(t, name);
-    }
-    clear(t);
-    return true;
-}
-
-/* L100 P2; arguments that are left out are 0. */
-static void put_calls(struct scan *s, char *name, char argument[SCAN_ARGUMENTS][48],
-                      unsigned arguments)
-{
-    unsigned times = 1;
-    char text[TRANSLATE_CALL_MAX];
-    char count[NAME_MAX_];
-    const char *before = s->at;
-    size_t length;
-
-    if (name[0] == 'L' && scan_name(s, count) && count[0] == 'P' && scan_is_digit(count[1]))
-        times = (unsigned)strtoul(count + 1, NULL, 10);
-    else
-        s->at = before;
-    s->failed = s->failed || times == 0 || times > 9999;
-    lower(name);
-    length = (size_t)snprintf(text, sizeof text, "o<%s> call", name);
-    for (unsigned i = 0; i < arguments; i++)
-        length += (size_t)snprintf(text + length, sizeof text - length, " [%s]",
-                                   argument[i][0] != '\0' ? argument[i] : "0");
-    for (unsigned i = 0; i < times && i < TRANSLATE_PROGRAMS_MAX && !s->failed; i++)
-        translate_add(&s->t->behind, "%s", text);
-}
-
-bool siemens_call(struct scan *s, char *name)
-{
-    if (name[0] != 'L' || !scan_is_digit(name[1]) ||
-        strspn(name + 1, "0123456789") != strlen(name + 1))
-        return false;
-    put_calls(s, name, NULL, 0);
-    return true;
-}
-
-/* L100 P2, NAME, NAME(1, 2): the whole line. */
-static bool take_call(struct scan *s, char *name)
-{
-    struct translator *t = s->t;
-    char argument[SCAN_ARGUMENTS][48] = {{0}};
-    unsigned arguments = 0;
-
-    if (scan_keyword(s, name) || (scan_is_digit(name[1]) && name[0] != 'L')) {
-        s->length = 0;
-        return false;
-    }
-    scan_skip(s);
-    if (*s->at == '(')
-        arguments = scan_arguments(s, argument);
-    if (s->failed || name[1] == '\0')
-        return false;
-    put_calls(s, name, argument, arguments);
-    scan_skip(s);
-    if (!scan_is_end(s) || s->failed) {
-        t->behind.length = 0;
-        return false;
-    }
-    clear(t);
-    return true;
-}
-
-static bool take_return(struct scan *s, const char *name)
-{
-    struct translator *t = s->t;
-
-    if (t->subprogram[0] == '\0' || (strcmp(name, "M17") != 0 && strcmp(name, "RET") != 0))
-        return false;
-    clear(t);
-    translate_add(&t->behind, "o<%s> return", t->subprogram);
-    return true;
-}
-
-/* ---- orders ---- */
-
-/* MSG("text"); without a text it takes the last one away. */
-static void take_text(struct scan *s)
-{
-    const char *begin = strchr(s->at, '"');
-    const char *end = begin != NULL ? strchr(begin + 1, '"') : NULL;
-
-    clear(s->t);
-    if (end == NULL)
-        return;
-    translate_message(s->t, begin + 1, (size_t)(end - begin - 1));
-}
-
-/* TRANS without axes takes all away. */
-static void take_shift(struct scan *s)
-{
-    scan_put(s, "G52 ");
-    scan_skip(s);
-    if (scan_is_end(s))
-        scan_put(s, "X0 Y0 Z0");
-    scan_words(s);
-}
-
-/* DEF REAL A=1, B */
-static void take_definitions(struct scan *s)
-{
-    struct translator *t = s->t;
-    char name[NAME_MAX_];
-
-    s->failed = s->failed || !scan_name(s, name);
-    do {
-        s->failed = s->failed || !scan_name(s, name) || t->variables == TRANSLATE_PROGRAMS_MAX;
-        if (s->failed)
-            return;
-        memcpy(t->variable[t->variables++], name, sizeof name);
-        if (scan_take(s, "="))
-            scan_assign(s, name);
-    } while (scan_take(s, ","));
-    clear(t);
-}
-
-/* PROC NAME(REAL A, INT B=2, VAR REAL C): #1, #2 ... of the subroutine. */
-static void take_parameters(struct scan *s)
-{
-    struct translator *t = s->t;
-    unsigned number = 0;
-    bool more = scan_take(s, "(");
-    char type[NAME_MAX_];
-    char name[NAME_MAX_];
-
-    while (more && !s->failed) {
-        s->failed = !scan_name(s, type) || (strcmp(type, "VAR") == 0 && !scan_name(s, type)) ||
-                    !scan_name(s, name) || t->variables == TRANSLATE_PROGRAMS_MAX;
-        if (s->failed)
-            return;
-        memcpy(t->variable[t->variables++], name, sizeof name);
-        s->length = 0;
-        scan_operand(s, name);
-        translate_add(&t->before, "%s=#%u", s->out, ++number);
-        if (scan_take(s, "="))
-            scan_brackets(s);
-        more = scan_take(s, ",");
-    }
-    clear(t);
-}
-
-/* ---- a line ---- */
-
-/* N100, and NAME: where jumps go to. */
-static bool take_label(struct scan *s)
-{
-    const char *before = s->at;
-    char name[NAME_MAX_];
-
-    if (!scan_name(s, name))
-        return false;
-    if (*s->at == ':' && s->at[1] != '=') {
-        s->at++;
-        jumps_add_label(s->t, number_of(s->t, name));
-        return true;
-    }
-    if (name[0] == 'N' && scan_is_digit(name[1]) &&
-        strspn(name + 1, "0123456789") == strlen(name + 1)) {
-        jumps_add_label(s->t, (uint32_t)strtoul(name + 1, NULL, 10));
-        return true;
-    }
-    s->at = before;
-    return false;
-}
-
-static bool take_order(struct scan *s, char *name)
-{
-    if (take_flow(s, name) || take_return(s, name) || siemens_cycle(s, name))
-        return true;
-    if (strcmp(name, "MSG") == 0) {
-        take_text(s);
-        return true;
-    }
-    if (strcmp(name, "DEF") == 0) {
-        take_definitions(s);
-        return true;
-    }
-    if (strcmp(name, "PROC") == 0 && scan_name(s, name)) {
-        if (s->t->subprogram[0] == '\0')
-            begin_subprogram(s->t, name);
-        take_parameters(s);
-        return true;
-    }
-    return *s->at != '=' && strcmp(name, "TRANS") != 0 && take_call(s, name);
-}
-
-void siemens_translate(struct translator *t)
-{
-    static _Thread_local struct line found;
-    struct scan s = {.t = t, .at = found.text};
-    const char *before;
-    char name[NAME_MAX_];
-
-    found = t->line;
-    if (take_section(t, found.text))
-        return;
-    if (*s.at == '/')
-        scan_put(&s, "%c", *s.at++);
-    while (take_label(&s))
-        ;
-    before = s.at;
-    if (scan_name(&s, name)) {
-        if (take_order(&s, name)) {
-            if (s.failed)
-                t->line = found;
-            return;
-        }
-        if (strcmp(name, "TRANS") != 0)
-            s.at = before;
-        else
-            take_shift(&s);
-    }
-    scan_words(&s);
-    if (!s.failed)
-        siemens_drill(&s);
-    if (!s.failed)
-        (void)line_read(&t->line, s.out, s.length);
-}
-
-void siemens_finish(struct translator *t)
-{
-    end_subprogram(t);
-    output_add(&t->result->text, t->before.bytes, t->before.length);
 }

@@ -1,6 +1,7 @@
 /*
- * The language of Siemens' controllers, before the table of differences, its values and words; flow
- * and orders are in flow.c, cycles in cycles.c: what it says in words and brackets.
+ * The language of Siemens' controllers, before the table of differences, its words; values are in
+ * values.c, flow in flow.c, subprograms in programs.c, orders in orders.c, cycles in cycles.c: what
+ * it says in words and brackets.
  *
  *     X=R1+2*(R2-1) CR=5 TURN=2       X[#101+2*[#102-1]] R5 P3
  *     R1=5 R2=R1*2                    #101=5, #102=[#101*2]
@@ -19,10 +20,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define R_FIRST 100U
-/* Values in values. */
-#define NESTED_MAX 12
 
 __attribute__((format(printf, 2, 3))) void scan_put(struct scan *s, const char *format, ...)
 {
@@ -72,164 +69,6 @@ bool scan_take(struct scan *s, const char *text)
     return true;
 }
 
-/* ---- values ---- */
-
-static void value(struct scan *s);
-
-static bool take_number(struct scan *s)
-{
-    size_t length = 0;
-
-    scan_skip(s);
-    while (scan_is_digit(s->at[length]) || s->at[length] == '.')
-        length++;
-    scan_put(s, "%.*s", (int)length, s->at);
-    s->at += length;
-    return length > 0;
-}
-
-/* ( value ) */
-static void bracketed(struct scan *s)
-{
-    s->failed = s->failed || !scan_take(s, "(");
-    scan_put(s, "[");
-    value(s);
-    scan_put(s, "]");
-    s->failed = s->failed || !scan_take(s, ")");
-}
-
-static bool is_variable(const struct translator *t, const char *name)
-{
-    for (unsigned i = 0; i < t->variables; i++) {
-        if (strcmp(t->variable[i], name) == 0)
-            return true;
-    }
-    return false;
-}
-
-static void put_variable(struct scan *s, const char *name)
-{
-    scan_put(s, "#<_def_");
-    for (; *name != '\0'; name++)
-        scan_put(s, "%c", line_lower(*name));
-    scan_put(s, ">");
-}
-
-void scan_operand(struct scan *s, const char *name)
-{
-    static const char *const functions[][2] = {
-        {"SIN", "SIN"},   {"COS", "COS"},   {"TAN", "TAN"},    {"ASIN", "ASIN"},
-        {"ACOS", "ACOS"}, {"SQRT", "SQRT"}, {"ABS", "ABS"},    {"EXP", "EXP"},
-        {"LN", "LN"},     {"TRUNC", "FIX"}, {"ROUND", "ROUND"}};
-    char *end;
-    const unsigned long number = strtoul(name + 1, &end, 10);
-
-    if (is_variable(s->t, name)) {
-        put_variable(s, name);
-        return;
-    }
-    if (name[0] == 'R' && scan_is_digit(name[1]) && *end == '\0' && number < 900) {
-        scan_put(s, "#%lu", R_FIRST + number);
-        return;
-    }
-    if (strcmp(name, "PI") == 0) {
-        scan_put(s, "3.14159265358979");
-        return;
-    }
-    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
-        if (strcmp(name, functions[i][0]) == 0) {
-            scan_put(s, "%s", functions[i][1]);
-            bracketed(s);
-            return;
-        }
-    }
-    s->failed = true;
-}
-
-void scan_single(struct scan *s)
-{
-    char name[NAME_MAX_];
-
-    scan_skip(s);
-    if (*s->at == '-' || *s->at == '+') {
-        scan_put(s, *s->at++ == '-' ? "[0-" : "[");
-        scan_single(s);
-        scan_put(s, "]");
-    } else if (*s->at == '(') {
-        bracketed(s);
-    } else if (scan_name(s, name)) {
-        scan_operand(s, name);
-    } else {
-        s->failed = s->failed || !take_number(s);
-    }
-}
-
-/* False: none stands here. */
-static bool operator(struct scan *s)
-{
-    static const char *const signs[][2] = {
-        {"==", " EQ "}, {"<>", " NE "}, {"<=", " LE "}, {">=", " GE "}, {"<", " LT "},
-        {">", " GT "},  {"+", "+"},     {"-", "-"},     {"*", "*"},     {"/", "/"}};
-    static const char *const words[] = {"MOD", "AND", "OR", "XOR"};
-    const char *before = s->at;
-    char name[NAME_MAX_];
-
-    for (size_t i = 0; i < sizeof signs / sizeof signs[0]; i++) {
-        if (scan_take(s, signs[i][0])) {
-            scan_put(s, "%s", signs[i][1]);
-            return true;
-        }
-    }
-    for (size_t i = 0; scan_name(s, name) && i < sizeof words / sizeof words[0]; i++) {
-        if (strcmp(name, words[i]) == 0) {
-            scan_put(s, " %s ", words[i]);
-            return true;
-        }
-        s->at = before;
-    }
-    s->at = before;
-    return false;
-}
-
-static void value(struct scan *s)
-{
-    if (s->t->nested > NESTED_MAX) {
-        s->failed = true;
-        return;
-    }
-    s->t->nested++;
-    do {
-        scan_single(s);
-    } while (!s->failed && operator(s));
-    s->t->nested--;
-}
-
-void scan_brackets(struct scan *s)
-{
-    scan_put(s, "[");
-    value(s);
-    scan_put(s, "]");
-}
-
-unsigned scan_arguments(struct scan *s, char argument[SCAN_ARGUMENTS][48])
-{
-    unsigned count = 0;
-
-    s->failed = s->failed || !scan_take(s, "(");
-    while (!s->failed && count < SCAN_ARGUMENTS && !scan_take(s, ")")) {
-        s->length = 0;
-        scan_skip(s);
-        scan_put(s, "%s", "");
-        if (*s->at != ',' && *s->at != ')')
-            scan_brackets(s);
-        s->out[s->length] = '\0';
-        (void)snprintf(argument[count++], 48, "%.47s", s->out);
-        (void)scan_take(s, ",");
-    }
-    s->length = 0;
-    return count;
-}
-
 /* ---- words ---- */
 
 /* X=IC(5) is 5 further, X=AC(5) at 5, in any mode; centres with AC are no distances. */
@@ -247,8 +86,9 @@ static void axis_value(struct scan *s, char letter, const char *way)
     else if (centre == NULL && strchr(axes, letter) == NULL)
         s->failed = true;
     else if (relative != s->t->incremental && centre == NULL)
-        scan_put(s, relative ? "#<_%c>+" : "0-#<_%c>+", low);
-    bracketed(s);
+        scan_put(s, "%s%s#<_%c>+", relative ? "" : "0-",
+                 letter == 'X' && s->t->diameter ? "2*" : "", low);
+    scan_bracketed(s);
     scan_put(s, "]");
 }
 
@@ -319,7 +159,7 @@ static void assigned_word(struct scan *s, const char *name)
     const char *before;
     char way[NAME_MAX_];
 
-    if ((name[0] == 'R' && scan_is_digit(name[1])) || is_variable(s->t, name)) {
+    if ((name[0] == 'R' && scan_is_digit(name[1])) || scan_is_variable(s, name)) {
         scan_assign(s, name);
         return;
     }
@@ -340,7 +180,7 @@ static void assigned_word(struct scan *s, const char *name)
     s->at = before;
     if (strcmp(letter, "P1+") == 0) {
         scan_put(s, "P[1+");
-        value(s);
+        scan_value(s);
         scan_put(s, "]");
         return;
     }
@@ -390,11 +230,15 @@ static void skip_arguments(struct scan *s)
 bool scan_keyword(struct scan *s, const char *name)
 {
     static const char *const words[][2] = {
-        {"SUPA", "G53"}, {"DIAMON", "G7"}, {"DIAMOF", "G8"}, {"RET", "M17"}};
+        {"SUPA", "G53"}, {"DIAMON", "G7"}, {"DIAM90", "G7"}, {"DIAMOF", "G8"}, {"RET", "M17"}};
 
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (strcmp(name, words[i][0]) == 0) {
-            scan_put(s, "%s", words[i][1]);
+            const bool follows = strcmp(name, "DIAM90") == 0;
+
+            if (strncmp(name, "DIAM", 4) == 0)
+                s->t->diameter_follows = follows;
+            scan_put(s, "%s", follows && s->t->incremental ? "G8" : words[i][1]);
             return true;
         }
     }
@@ -414,11 +258,11 @@ static void plain_word(struct scan *s, const char *name)
     if (name[1] == '\0' && (digit == '-' || digit == '+' || digit == '.')) {
         if (digit == '-' || digit == '+')
             scan_put(s, "%c", *s->at++);
-        (void)take_number(s);
+        scan_number(s);
     } else if (name[1] != '\0' && digit == '.') {
-        (void)take_number(s);
+        scan_number(s);
     } else if (name[1] == '\0' && digit == '(' && strchr("XYZABCIJKF", name[0]) != NULL) {
-        bracketed(s);
+        scan_bracketed(s);
     }
 }
 
@@ -447,6 +291,8 @@ static void word(struct scan *s)
     }
     if (scan_take(s, "=")) {
         assigned_word(s, name);
+    } else if (scan_return(s, name)) {
+        skip_arguments(s);
     } else if (!take_edge(s, name) && !siemens_call(s, name) && !scan_keyword(s, name)) {
         const bool plain = name[1] == '\0' || scan_is_digit(name[1]);
 

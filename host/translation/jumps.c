@@ -29,39 +29,58 @@ void jumps_add_label(struct translator *t, uint32_t number)
 }
 
 /* Where it is filled in is a place in behind, until the line is put out. */
-void jumps_go_to(struct translator *t, uint32_t number)
+void jumps_go_to(struct translator *t, uint32_t number, enum jump_way way)
 {
     if (t->jumps < TRANSLATE_JUMPS_MAX)
-        t->jump[t->jumps++] =
-            (struct jump){t->program, number, t->number, t->behind.length + 1, t->depth};
+        t->jump[t->jumps++] = (struct jump){.way = way,
+                                            .program = t->program,
+                                            .number = number,
+                                            .line = t->number,
+                                            .patch = t->behind.length + 1,
+                                            .depth = t->depth};
     translate_add(&t->behind, "o00000000 goto [00000000] [00]");
+}
+
+/* One further back takes the place of what has been found before it. */
+static bool is_better(const struct jump *j, const struct label *label, const struct label *found)
+{
+    if (label->program != j->program || label->number != j->number || label->depth > j->depth)
+        return false;
+    switch (j->way) {
+    case JUMP_FORWARD:
+        return found == NULL && label->line > j->line;
+    case JUMP_BACK:
+        return label->line <= j->line;
+    case JUMP_ANYWHERE:
+        break;
+    }
+    return found == NULL;
 }
 
 static const struct label *find_label(const struct translator *t, const struct jump *j)
 {
+    const struct label *found = NULL;
+
     for (unsigned i = 0; i < t->labels; i++) {
-        if (t->label[i].program == j->program && t->label[i].number == j->number)
-            return &t->label[i];
+        if (is_better(j, &t->label[i], found))
+            found = &t->label[i];
     }
-    return NULL;
+    return found;
 }
 
-bool jumps_finish(struct translator *t)
+void jumps_finish(struct translator *t)
 {
     for (unsigned i = 0; i < t->jumps; i++) {
         const struct jump *j = &t->jump[i];
         const struct label *label = find_label(t, j);
         char text[64];
+        int length;
 
-        if (label == NULL || label->depth > j->depth || label->offset > 99999999U) {
-            t->result->wrong_line = j->line;
-            t->result->wrong_number = j->number;
-            return false;
-        }
-        const int length = snprintf(text, sizeof text, "o%08u goto [%08u] [%02u]",
-                                    (unsigned)label->offset, (unsigned)label->line, label->depth);
-
+        if (label == NULL || label->offset > 99999999U)
+            length = snprintf(text, sizeof text, "o00000000 goto %15s", "");
+        else
+            length = snprintf(text, sizeof text, "o%08u goto [%08u] [%02u]",
+                              (unsigned)label->offset, (unsigned)label->line, label->depth);
         memcpy(t->result->text.bytes + j->patch, text, (size_t)length);
     }
-    return true;
 }

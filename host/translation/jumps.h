@@ -8,8 +8,9 @@
 void jumps_note_label(struct translator *t, size_t offset);
 /* The same for a number, or a name that has been given one. */
 void jumps_add_label(struct translator *t, uint32_t number);
-void jumps_go_to(struct translator *t, uint32_t number);
-/* Fills in where jumps go. False: one has no target; the result says which. */
-bool jumps_finish(struct translator *t);
+/* The nearest label that way; anywhere: the first. */
+void jumps_go_to(struct translator *t, uint32_t number, enum jump_way way);
+/* Fills in where jumps go. One without a target is an error when it is taken. */
+void jumps_finish(struct translator *t);
 
 #endif

@@ -33,9 +33,6 @@ struct dialect_result {
     struct dialect_text text;
     struct dialect_note note[DIALECT_NOTES_MAX];
     unsigned notes;
-    /* 0: nothing is wrong; else a jump of this line to an N that is not there, or is in a loop */
-    uint32_t wrong_line;
-    unsigned wrong_number;
 };
 
 void output_add(struct dialect_text *t, const char *bytes, size_t length);

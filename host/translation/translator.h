@@ -14,6 +14,9 @@
 #define TRANSLATE_JUMPS_MAX    1024
 #define TRANSLATE_LINES_MAX    16
 #define TRANSLATE_NUMBERS_MAX  64
+#define TRANSLATE_NAMES_MAX    1024
+/* More than the interpreter has in one another. */
+#define TRANSLATE_BLOCKS_MAX 64
 /* A call with all of its arguments. */
 #define TRANSLATE_CALL_MAX 1408
 
@@ -24,8 +27,11 @@ struct label {
     unsigned depth; /* loops it is in */
 };
 
+enum jump_way { JUMP_ANYWHERE, JUMP_FORWARD, JUMP_BACK };
+
 /* A jump whose target is filled in at the end. */
 struct jump {
+    enum jump_way way;
     uint32_t program, number, line;
     size_t patch; /* in the text: where its digits begin */
     unsigned depth;
@@ -95,14 +101,18 @@ struct translator {
     uint32_t macro;       /* the current program is called by G65; 0: it is not */
     char modal_call[TRANSLATE_CALL_MAX]; /* G66; empty: none */
     /*
-     * Siemens: names that are jumped to, those of variables (DEF), open blocks, the subprogram it
-     * is in
+     * Siemens: names that are jumped to, those of variables (DEF), open blocks, sections that are
+     * repeated, the subprogram it is in
      */
-    unsigned names, variables, blocks, nested;
-    char name[TRANSLATE_PROGRAMS_MAX][32], variable[TRANSLATE_PROGRAMS_MAX][32];
-    uint32_t block[TRANSLATE_LINES_MAX];
+    unsigned names, variables, blocks, nested, repeats;
+    char name[TRANSLATE_NAMES_MAX][32], variable[TRANSLATE_NAMES_MAX][32];
+    uint32_t block[TRANSLATE_BLOCKS_MAX];
     char subprogram[32];
-    size_t line_offset; /* of the current line, in the text */
+    const char *called;    /* the text is the subprogram of this name; NULL: the program itself */
+    bool worded;           /* this program or subprogram has had a line */
+    bool diameter;         /* X is one (DIAMON), */
+    bool diameter_follows; /* as long as G90 is in effect (DIAM90) */
+    size_t line_offset;    /* of the current line, in the text */
     struct turned profile[TRANSLATE_LINES_MAX];
     unsigned profiles;
     double skip_from, skip_to; /* blocks to be passed over; 0: none */

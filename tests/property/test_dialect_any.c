@@ -165,8 +165,8 @@ static void check(unsigned seed)
     for (unsigned i = 0; i < DIALECT_COUNT; i++) {
         const size_t mark = length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 
-        TEST_ASSERT_TRUE_MESSAGE(dialect_translate((enum dialect)i, &codes, text, length, &result),
-                                 label);
+        TEST_ASSERT_TRUE_MESSAGE(
+            dialect_translate((enum dialect)i, &codes, NULL, text, length, &result), label);
         if (!own)
             TEST_ASSERT_EQUAL_UINT_MESSAGE(count_lines(text + mark, length - mark),
                                            count_lines(result.text.bytes, result.text.length),

@@ -121,7 +121,10 @@ status, found, err = moves("wrong.nc")
 t.check(status == 2 and "wrong.nc:2:25: error: no code on this line uses the word 'Q3'\n" in err, "the column", err)
 t.write("jump.nc", "G0 X1\nGOTO 7\nM30\n")
 status, found, err = moves("jump.nc")
-t.check(status == 2 and "jump.nc:2:1: error: GOTO 7: " in err, "a jump to nowhere", err)
+t.check(status == 2 and "jump.nc:2:1: error: 'GOTO 7' goes to a label that no line" in err, "a jump to nowhere", err)
+t.write("jump.nc", "IF [1 EQ 0] GOTO 7\nG0 X1\nM30\n")
+status, found, err = moves("jump.nc", "--dialect", "fanuc")
+t.check(status == 0 and found == [rapid(1), "end"], "one that is not taken", found, err)
 
 # Siemens: words with '=', parameters, flow, subprograms and cycles.
 t.write("part.mpf", """\
@@ -159,6 +162,44 @@ t.check(status == 0 and found == [
     ("20", "rapid", "X32.000000", "Y1.000000", "Z51.000000"), ("20", "rapid", "X32.000000", "Y1.000000", "Z52.000000"),
     ("18", "end")], "a program for Siemens", found, err)
 t.check("part.mpf is read as siemens, since line 1 has '%_N_PART_MPF'" in err, "and why it is one", err)
+
+def siemens(text, *arguments):
+    t.write("try.mpf", text)
+    return moves("try.mpf", "--dialect", "siemens", *arguments)
+
+
+status, found, err = siemens("TRANS X10\nTRANS Y5\nG0 X0 Y0\nATRANS X1 Y1\nX0 Y0\nSCALE\nX0 Y0\n")
+t.check(found == [rapid(0, 5), rapid(1, 6), rapid(0, 0), "end"], "TRANS takes the place of all frames, ATRANS adds", found, err)
+status, found, err = siemens("PROC MAIN\nG0 X5\nUP2\nM30\nPROC UP1\nX1\nM17\nPROC UP2\nX2\nRET\n")
+t.check(found == [rapid(5), rapid(2), "end"], "PROC of a main program, and of two subprograms", found, err)
+t.write("HOLE.SPF", "G0 Y1\nM17\n")
+status, found, err = siemens("HOLE\nG0 X1\nM30\n")
+t.check(found == [rapid(0, 1), rapid(1, 1), "end"], "a subprogram in a file that says nothing of it", found, err)
+status, found, err = siemens("DEF INT HH\nIF HH GOTOF ENDE\nG0 X10\nA1: X=IC(1)\nREPEAT A1 P=2\nM30\n")
+t.check(found == [rapid(x) for x in (10, 11, 12, 13)] + ["end"], "a jump that is not taken, and a section again", found, err)
+
+# Pecks: to FDEP, then shorter by DAM, the last two alike; back by 1 mm, or out.
+heights = [[float(line.split()[3][1:]) for line in siemens(f"G0 X0 F100\n{cycle}\n")[1][1:-2]] for cycle in (
+    "CYCLE83(10,0,2,-20,,-8,,3,0,0,1,0)", "CYCLE83(10,0,2,,20,,8,3,0,0,1,1)", "G91\nCYCLE83(10,0,2,-20,,-15,,0,,,,1)",
+    "CYCLE83(10,0,2,-20,,-15,,0,0,0,0.5,0,0,0,0.25)")]
+t.check(heights == [[2, -8, -7, -13, -12, -16, -15, -18, -17, -20, 10],
+                    [2, -8, 2, -7.4, -13, 2, -12.4, -16, 2, -15.4, -18, 2, -17.4, -20, 10],
+                    [2, -15, 2, -14.4, -20, 10], [2, -15, -14.75, -20, 10]], "pecks of CYCLE83", heights)
+status, found, err = siemens("G0 X0 F100\nCYCLE83(10,0,2,-20,,5,,3,0,0,1,0)\n")
+t.check(status == 2 and "FDEP must be below RFP" in err, "a first peck above the reference", err)
+
+# What is wrong is called what the program calls it.
+for text, wrong in (
+        ("G0 X1\nENDIF\n", "2:1: error: 'ENDIF' belongs to no open block"),
+        ("N10 IF R1==1\nX1\n", "1:5: error: 'IF R1==1' is not closed"),
+        ("LOOP\nG0 X=IC(1)\n", "1:1: error: 'LOOP' is not closed"),
+        ("R1=1\nIF R1 GOTOF ENDE ; out\n", "2:7: error: 'GOTOF ENDE' goes to a label that no line"),
+        ("AA: GOTOF AA\n", "1:5: error: 'GOTOF AA' goes to a label"),
+        ("ROT Z30\n", "1:1: error: unknown word 'ROT Z30'"),
+        ("IF $P_SIM\nX1\nELSE\nX2\nENDIF\n", "1:1: error: unknown word 'IF $P_SIM'"),
+        ("NOSUB(3)\n", "1:1: error: 'NOSUB(3)' calls a subroutine")):
+    status, found, err = siemens(text)
+    t.check(status == 2 and err.count(": error: ") == 1 and "try.mpf:" + wrong in err and "o1 if" not in err, "what is wrong", err)
 
 # A printer's program is the way of its nozzle.
 t.write("print.gcode", "M104 S200\nG28 X0 Y0\nG92 E0\nG1 X5 E1.5 F600\nM104 S0\n")

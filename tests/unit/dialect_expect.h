@@ -28,7 +28,7 @@ static inline void expect(enum dialect dialect, const char *from, const char *to
 {
     char found[4096];
 
-    TEST_ASSERT_TRUE(dialect_translate(dialect, &codes, from, strlen(from), &result));
+    TEST_ASSERT_TRUE(dialect_translate(dialect, &codes, NULL, from, strlen(from), &result));
     TEST_ASSERT_TRUE(result.text.length < sizeof found);
     memcpy(found, result.text.bytes, result.text.length);
     found[result.text.length] = '\0';

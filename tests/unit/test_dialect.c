@@ -131,13 +131,10 @@ static void test_loops_branches_and_jumps_become_o_words(void)
            "(abort,STOP IT)\n(msg,LOOK)\n|M0\n");
 }
 
-static void test_a_jump_to_nowhere_is_told(void)
+static void test_a_jump_to_nowhere_has_no_place(void)
 {
-    static const char text[] = "G1\nGOTO 7\nO1\nN7 G1\n";
-
-    TEST_ASSERT_TRUE(dialect_translate(DIALECT_FANUC, &codes, text, sizeof text - 1, &result));
-    TEST_ASSERT_EQUAL_UINT32(2, result.wrong_line);
-    TEST_ASSERT_EQUAL_UINT(7, result.wrong_number);
+    expect(DIALECT_FANUC, "G1\nGOTO 7\nO1\nN7 G1\n",
+           "G1\no00000000 goto                \nO1\nN7 G1\n");
 }
 
 static void test_macros_are_called_with_their_arguments(void)
@@ -461,7 +458,7 @@ int main(void)
     RUN_TEST(test_axes_that_are_named_alone_go_to_their_reference);
     RUN_TEST(test_a_rapid_beside_a_reference_holds_from_the_next_line_on);
     RUN_TEST(test_loops_branches_and_jumps_become_o_words);
-    RUN_TEST(test_a_jump_to_nowhere_is_told);
+    RUN_TEST(test_a_jump_to_nowhere_has_no_place);
     RUN_TEST(test_macros_are_called_with_their_arguments);
     RUN_TEST(test_dwells_in_milliseconds_become_seconds);
     RUN_TEST(test_turning_has_diameters_and_limits_of_speed);

@@ -68,7 +68,7 @@ static void test_polar_coordinates_of_fanuc_are_polar_words(void)
     expect(DIALECT_FANUC, "G16\nG15\nX1\n", "   \n   \nX1\n");
     expect(DIALECT_FANUC, "G16\nG91 X1\n", "   \nG91 X1 G16\n");
     expect(DIALECT_FANUC, "G18\nG16\nX1\n", "G18\nG16\nX1 G16\n");
-    TEST_ASSERT_TRUE(dialect_translate(DIALECT_FANUC, &codes, "G16 X5 Y30", 10, &result));
+    TEST_ASSERT_TRUE(dialect_translate(DIALECT_FANUC, &codes, NULL, "G16 X5 Y30", 10, &result));
     TEST_ASSERT_NOT_NULL(strstr(result.text.bytes, "#<_polar_radius>=[[5]+"));
     TEST_ASSERT_NOT_NULL(strstr(result.text.bytes, "#<_polar_angle>=[[30]+"));
 }

@@ -10,7 +10,7 @@ static void test_words_and_values_of_siemens(void)
            "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
     expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
     expect(DIALECT_SIEMENS, "DEF REAL TOP=2, LOW\nLOW=TOP-1\nZ=LOW\n",
-           "#<_def_top>=[2]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
+           "#<_def_top>=[2]\n|#<_def_low>=[0]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
     expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
            "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
     expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
@@ -57,9 +57,80 @@ static void test_named_tools_have_numbers_of_the_machine_file(void)
 static void test_orders_of_siemens(void)
 {
     expect(DIALECT_SIEMENS, "MSG(\"a (b)\")\nTRANS X1\nTRANS\n",
-           "(msg,a [b])\nG52 X1 \nG52 X0 Y0 Z0\n");
+           "(msg,a [b])\nG92.1\n|G52 X[1*[1]]\nG92.1\n");
     expect(DIALECT_SIEMENS, "MCALL CYCLE82(50,0,2,-9,,1)\nG0 X1\nMCALL\n",
-           "G0 Z[50]\n   X1  G98 G82 R[[0]+[2]] Z[[[0-9]]] P[[1]]\nG80 G0\n");
+           "G0 Z[50]\n   X1  G98 G82 R[[0]+[2]] Z[[0-9]] P[1]\nG80 G0\n");
+}
+
+static void test_a_shift_takes_the_place_of_all_frames_or_is_added(void)
+{
+    expect(DIALECT_SIEMENS, "N1 TRANS X10 Y=R1\nATRANS Z-2 ; more\nROT\nMIRROR X0\n",
+           "G92.1\n|G52 X[1*[10]] Y[1*[#101]]\nG92 Z[1*[#<_z>-[[0-2]]]]\nG92.1\nMIRROR X0\n");
+    expect(DIALECT_SIEMENS, "DIAMON\nTRANS X10\nX=IC(1)\nDIAM90\nG91\n",
+           "G7 \nG92.1\n|G52 X[2*[10]]\nX[2*#<_x>+[1]] \nG7 \nG91  G8\n");
+}
+
+static void test_functions_and_constants(void)
+{
+    expect(DIALECT_SIEMENS, "X=POT(R1) Y=ATAN2(1,2) Z=2*$PI\n",
+           "X[[[#101]*[#101]]] Y[ATAN[1]/[2]] Z[2*3.14159265358979] \n");
+    expect(DIALECT_SIEMENS, "R1=1+7 DIV 2*3 R2=MINVAL(R1,2)\n",
+           "#101=[1+[FIX[ABS[7/2]]*[1-2*[[7/2] LT 0]]]*3]\n"
+           "|#102=[[[#101]*[[#101] LT [2]]+[2]*[1-[[#101] LT [2]]]]]\n");
+    expect(DIALECT_SIEMENS, "DEF BOOL OK=TRUE\nIF NOT OK\nENDIF\n",
+           "#<_def_ok>=[1]\no98000002 if [[#<_def_ok> EQ 0]]\no98000002 endif\n");
+}
+
+static void test_dwells_and_no_offset(void)
+{
+    expect(DIALECT_SIEMENS, "G4 F2\nG4 S10\n", "G4 P2 \nG4 P[60*10/#<_rpm>] \n");
+    expect(DIALECT_SIEMENS, "G500 X1\n",
+           "o98000001 if [ABS[#5381]+ABS[#5382]+ABS[#5383]+ABS[#5384]+ABS[#5385]+ABS[#5386]+"
+           "ABS[#5390] NE 0]\n|(abort,G500 is G59.3 here, whose offsets must be 0)\n"
+           "|o98000001 endif\n|G59.3 X1 \n");
+}
+
+static void test_a_subprogram_ends_where_the_next_begins(void)
+{
+    expect(DIALECT_SIEMENS, "BB\nM30\nPROC A\nX1\nM17\nPROC BB\nX2 RET\n",
+           "o<bb> call\nM30 \no<a> sub\nX1 \no<a> return\no<a> endsub\n|o<bb> sub\n"
+           "X2  \n|o<bb> return\n|o<bb> endsub\n");
+}
+
+static void test_what_the_text_begins_with_is_the_main_program(void)
+{
+    expect(DIALECT_SIEMENS, ";part\nPROC MAIN\nX1\nM30\nPROC A\nM17\n",
+           ";part\n\nX1 \nM30 \no<a> sub\no<a> return\n|o<a> endsub\n");
+    expect(DIALECT_SIEMENS, "%_N_A_SPF\nPROC A\nX1\nM17\n", "\n\nX1 \nM2  \n");
+}
+
+static void test_a_text_that_is_called_is_the_subprogram(void)
+{
+    static const char text[] = ";bore\nX1\nM17\n";
+
+    TEST_ASSERT_TRUE(
+        dialect_translate(DIALECT_SIEMENS, &codes, "l7", text, sizeof text - 1, &result));
+    TEST_ASSERT_EQUAL_INT(0, strncmp(result.text.bytes, ";bore\no<l7> sub\n", 16));
+}
+
+static void test_jumps_go_the_way_they_say(void)
+{
+    expect(DIALECT_SIEMENS, "A: X1\nGOTOF A\nA: X2\nGOTOB A\nGOTOF A\n",
+           "X1 \no00000035 goto [00000003] [00]\nX2 \no00000035 goto [00000003] [00]\n"
+           "o00000000 goto                \n");
+}
+
+static void test_a_section_is_repeated(void)
+{
+    expect(DIALECT_SIEMENS, "A: X1\nREPEAT A P=2\n",
+           "X1 \n#1100=[#1100+1]\n|o98000002 if [#1100 LE [2]]\n"
+           "|o00000000 goto [00000001] [00]\n|o98000002 endif\n|#1100=0\n");
+}
+
+static void test_what_a_line_opens_that_is_not_understood_is_passed_over(void)
+{
+    expect(DIALECT_SIEMENS, "IF $P_SIM\nX1\nENDIF\n",
+           "IF $P_SIM\n|o98000001 if [0]\nX1 \no98000001 endif\n");
 }
 
 int main(void)
@@ -70,5 +141,14 @@ int main(void)
     RUN_TEST(test_subprograms_of_siemens);
     RUN_TEST(test_named_tools_have_numbers_of_the_machine_file);
     RUN_TEST(test_orders_of_siemens);
+    RUN_TEST(test_a_shift_takes_the_place_of_all_frames_or_is_added);
+    RUN_TEST(test_functions_and_constants);
+    RUN_TEST(test_dwells_and_no_offset);
+    RUN_TEST(test_a_subprogram_ends_where_the_next_begins);
+    RUN_TEST(test_what_the_text_begins_with_is_the_main_program);
+    RUN_TEST(test_a_text_that_is_called_is_the_subprogram);
+    RUN_TEST(test_jumps_go_the_way_they_say);
+    RUN_TEST(test_a_section_is_repeated);
+    RUN_TEST(test_what_a_line_opens_that_is_not_understood_is_passed_over);
     return UNITY_END();
 }

@@ -146,11 +146,11 @@ static void read_as(enum dialect dialect, const char *bytes, size_t length)
     static struct dialect_result result;
     const size_t mark = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 
-    require(dialect_translate(dialect, &codes, bytes, length, &result));
+    require(dialect_translate(dialect, &codes, NULL, bytes, length, &result));
     if (memchr(bytes, DIALECT_GOES_ON, length) == NULL)
         require(count_lines(bytes + mark, length - mark) ==
                 count_lines(result.text.bytes, result.text.length));
-    if (result.wrong_line == 0 && result.text.length > 0)
+    if (result.text.length > 0)
         read_moves(result.text.bytes, result.text.length, dialect);
     dialect_text_free(&result.text);
 }
