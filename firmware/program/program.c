@@ -12,6 +12,7 @@
 #include "program/lexer.h"
 #include "program/modes.h"
 #include "program/probe.h"
+#include "program/refused.h"
 #include "program/spline.h"
 #include "program/tool_values.h"
 #include "program/words.h"
@@ -105,6 +106,17 @@ static bool is_percent(const struct program_lexer *l)
     return l->length == 1 && l->text[0] == '%';
 }
 
+static bool take_words(struct program *p)
+{
+    takt_tool_values_begin_line(p);
+    const bool read = takt_words_read(p) && takt_comment_run(p);
+
+    if (contour_is_open(p)) {
+        return read && takt_contour_take_line(p);
+    }
+    return takt_refused_judge(p, read && run_line(p));
+}
+
 static bool take_line(struct program *p)
 {
     struct program_lexer *l = &p->lexer;
@@ -127,11 +139,7 @@ static bool take_line(struct program *p)
     if (flow_is_skipping(p)) {
         return true;
     }
-    takt_tool_values_begin_line(p);
-    if (!takt_words_read(p) || !takt_comment_run(p)) {
-        return false;
-    }
-    return contour_is_open(p) ? takt_contour_take_line(p) : run_line(p);
+    return take_words(p);
 }
 
 /* The line to start at waits until the way to it has been fetched. */

@@ -222,7 +222,9 @@ struct program_flow {
     bool
         failed; /* there has been an error: nothing is repeated any more, so that it is told once */
     bool value_returned;
-    bool restarted; /* M99 of the main program has gone back to the beginning */
+    bool restarted;      /* M99 of the main program has gone back to the beginning */
+    bool motion_refused; /* by a line with an error; no motion code has come since */
+    uint32_t refused;    /* axes and F of such lines, not given since */
     double value;
     struct program_place furthest; /* everything before it has been read */
     uint64_t read_to;              /* and something up to here: further on behind a jump forward */

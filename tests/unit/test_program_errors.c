@@ -182,12 +182,47 @@ static void test_the_interpreter_fits_into_its_memory(void)
     TEST_ASSERT_TRUE(sizeof(struct program) + sizeof(struct parameters) <= PROGRAM_MEMORY_MAX);
 }
 
+/* The errors of a text, by their lines. */
+static void expect_errors(const char *text, const uint32_t *lines, unsigned count)
+{
+    struct move move;
+    enum program_result result;
+    unsigned errors = 0;
+
+    reader_open(&reader, text);
+    while ((result = takt_program_next(&reader.program, &move, &reader.diagnostic)) !=
+           PROGRAM_END) {
+        if (result == PROGRAM_ERROR) {
+            TEST_ASSERT_TRUE_MESSAGE(errors < count, text);
+            TEST_ASSERT_EQUAL_UINT32_MESSAGE(lines[errors++], reader.diagnostic.line, text);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT_MESSAGE(count, errors, text);
+}
+
+static void test_what_only_comes_of_a_refused_line_is_no_error(void)
+{
+    static const uint32_t arc[] = {2, 5};
+    static const uint32_t feed[] = {1};
+    static const uint32_t other[] = {1, 2};
+    static const uint32_t late[] = {2, 5};
+
+    /* the motion, then where it begins; another error of a line is told */
+    expect_errors("G1 X1 F60\nG2 X10 Y0 I5 J3\nX7 Y3 I-24.273 J2\nG3 X9 Y0 I1\nG1 X8 Y8 K1", arc,
+                  2);
+    expect_errors("G1 X1 F60 Q1\nX2\nG1 X3", feed, 1);
+    expect_errors("G0 X1 Q1\nE1", other, 2);
+    /* the place and the motion are known again */
+    expect_errors("G1 X1 F60\nG2 X9 Y1 I3\nG1 X1 Y1\nX2\nG2 X9 Y1 I3", late, 2);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_errors_name_line_column_and_word);
     RUN_TEST(test_reading_goes_on_with_the_next_line);
     RUN_TEST(test_a_faulty_line_changes_no_mode_and_moves_nothing);
+    RUN_TEST(test_what_only_comes_of_a_refused_line_is_no_error);
     RUN_TEST(test_a_line_that_fails_half_way_is_undone_whole);
     RUN_TEST(test_a_faulty_line_changes_no_parameter);
     RUN_TEST(test_a_source_that_fails_ends_the_program);
