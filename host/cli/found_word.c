@@ -85,11 +85,13 @@ static bool is_letter(char c)
     return is_part_of_name(c) && !is_digit(c);
 }
 
-/* A letter without a number that begins a name. */
+/* A letter without a number, or of an axis that is not there, that begins a name. */
 static bool is_name(const char *line, size_t length, const struct diagnostic *d)
 {
-    return d->code == TAKT_ERROR_NUMBER_EXPECTED && d->column > 0 && d->column < length &&
-           is_letter(line[d->column - 1]) && is_letter(line[d->column]);
+    const bool letter = d->code == TAKT_ERROR_NUMBER_EXPECTED || d->code == TAKT_ERROR_AXIS_MISSING;
+
+    return letter && d->column > 0 && d->column < length && is_letter(line[d->column - 1]) &&
+           is_letter(line[d->column]);
 }
 
 void found_word_restore(const char *line, size_t length, struct diagnostic *d)

@@ -197,6 +197,7 @@ for text, wrong in (
         ("AA: GOTOF AA\n", "1:5: error: 'GOTOF AA' goes to a label"),
         ("ROT Z30\n", "1:1: error: unknown word 'ROT Z30'"),
         ("IF $P_SIM\nX1\nELSE\nX2\nENDIF\n", "1:1: error: unknown word 'IF $P_SIM'"),
+        ("CYCLE83(10,0,2,-20)\n", "1:1: error: unknown word 'CYCLE83(10,0,2,-20)'"),
         ("NOSUB(3)\n", "1:1: error: 'NOSUB(3)' calls a subroutine")):
     status, found, err = siemens(text)
     t.check(status == 2 and err.count(": error: ") == 1 and "try.mpf:" + wrong in err and "o1 if" not in err, "what is wrong", err)
