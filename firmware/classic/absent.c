@@ -18,6 +18,11 @@ void takt_interpolator_init(struct interpolator *i, const struct interpolator_co
     (void)config;
 }
 
+void takt_interpolator_restart(struct interpolator *i)
+{
+    (void)i;
+}
+
 double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
 {
     (void)range_mm;

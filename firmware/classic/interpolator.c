@@ -17,6 +17,11 @@ void takt_interpolator_init(struct interpolator *i, const struct interpolator_co
     i->config = *config;
 }
 
+void takt_interpolator_restart(struct interpolator *i)
+{
+    i->block = 0;
+}
+
 /* range < unit 2^(m-1) */
 double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
 {

@@ -61,8 +61,8 @@ struct interpolator {
 #else
     struct interpolator_config config;
     struct interpolator_errors errors;
-    bool active; /* this block is not left exact */
-    uint32_t block;
+    bool active;    /* this block is not left exact */
+    uint32_t block; /* 0: none yet */
     struct curve curve;
     double part;      /* of the curve done, 0 ... 1 */
     double way_mm;    /* in the last cycle */
@@ -75,6 +75,9 @@ struct interpolator {
 };
 
 void takt_interpolator_init(struct interpolator *i, const struct interpolator_config *config);
+
+/* Another program, whose motions are counted from 1 again: what comes next is a new motion. */
+void takt_interpolator_restart(struct interpolator *i);
 
 /* Does it leave all setpoints as they are? */
 static inline bool interpolator_is_exact(const struct interpolator *i)
