@@ -47,7 +47,7 @@ static void look_at_axes(const struct service *s, uint32_t *value)
     uint16_t statusword[AXIS_COUNT];
     struct point actual, following;
 
-    drives_get_actual(&s->controller.drives, &actual);
+    takt_controller_get_actual(&s->controller, &actual);
     takt_drives_get_statuswords(&s->controller.drives, statusword);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct point *set = &s->sent[DRIVES_LATENCY_CYCLES - 1];
