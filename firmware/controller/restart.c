@@ -120,8 +120,11 @@ void takt_controller_recover(struct controller *c, const struct controller_confi
 
     takt_controller_drives_config(&c->machine, c->dcf, &drives);
     drives.homed = !home && takt_drives_are_homed(&c->drives);
+    drives_get_actual(&c->drives, &drives.at);
     takt_drives_init(&c->drives, &drives);
     takt_controller_steps_restart(c);
+    takt_controller_get_actual(c, &c->record.set);
+    takt_approach_init(&c->approach, &c->record.set);
     takt_correction_restart(&c->correction, &c->record.set);
     controller_shape_restart(c);
     takt_controller_start_program(c, config, &c->record.set);

@@ -40,9 +40,9 @@ bool takt_controller_has_ended(const struct controller *c);
 
 /*
  * After CONTROLLER_FAULTED, or at rest between programs: resets and enables the drives again where
- * they stand. CONTROLLER_STARTING, then CONTROLLER_COMPLETED after an empty program: config->source
- * is empty. home: axes that are homed at start are homed again, else only if they have not been.
- * Correction fades in anew.
+ * they stand; until a drive reports, that is where it was. CONTROLLER_STARTING, then
+ * CONTROLLER_COMPLETED after an empty program: config->source is empty. home: axes that are homed
+ * at start are homed again, else only if they have not been. Correction fades in anew.
  */
 void takt_controller_recover(struct controller *c, const struct controller_config *config,
                              bool home);

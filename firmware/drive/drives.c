@@ -110,6 +110,7 @@ void takt_drives_init(struct drives *d, const struct drives_config *config)
     d->frame_max = config->rates.data > 0 ? CAN_DATA_MAX : CAN_CLASSIC_MAX;
     d->group = (uint8_t)takt_drives_group_of(&config->rates);
     d->homed = config->homed;
+    d->actual = config->at;
     d->no_error_pdo = config->no_error_pdo;
     d->position_gain_per_s = config->position_gain_per_s;
     take_times(d, config);

@@ -84,7 +84,8 @@ struct drives_config {
     struct drives_gantry gantry[DRIVES_GANTRIES_MAX];
     unsigned io_count;              /* I/O nodes beside them, 0 ... IO_NODES_MAX */
     const struct io_wiring *wiring; /* of these. Must outlive the drives */
-    bool homed; /* all axes have been homed since power-on: they are not homed again */
+    bool homed;      /* all axes have been homed since power-on: they are not homed again */
+    struct point at; /* where each axis was known to be last, until it reports; 0 if it never was */
     uint32_t cycle_us;
     struct drives_rates rates;  /* of every bus */
     double position_gain_per_s; /* of drives that follow by velocity: drives_velocity.c; > 0 */
@@ -187,7 +188,10 @@ static inline enum drives_state drives_get_state(const struct drives *d)
 {
     return d->state;
 }
-/* Last reported actual position of every axis, mm or rad; 0 for axes without a drive. */
+/*
+ * Last reported actual position of every axis, mm or rad, before the first as configured; 0 for
+ * axes without a drive.
+ */
 static inline void drives_get_actual(const struct drives *d, struct point *actual)
 {
     *actual = d->actual;

@@ -66,12 +66,21 @@ static enum panel_verdict check_jog(const struct service *s, bool negative)
     return takt_service_jog_is_possible(s, negative) ? PANEL_DONE : PANEL_WRONG_VALUE;
 }
 
+/* Step drives brake by themselves after every fault. */
+static bool steps_brake(const struct service *s)
+{
+    const struct steps *steps = &s->controller.steps;
+
+    return s->failed && steps_are_there(steps) && !steps_rest(steps);
+}
+
 /* Drives that brake are left alone until they stand. */
 static enum panel_verdict check_reset(const struct service *s)
 {
     const enum drives_state drives = drives_get_state(&s->controller.drives);
 
-    return verdict_on(!s->emergency && drives != DRIVES_STOPPING && drives != DRIVES_BRAKING);
+    return verdict_on(!s->emergency && drives != DRIVES_STOPPING && drives != DRIVES_BRAKING &&
+                      !steps_brake(s));
 }
 
 /* Coils that start something, written as 1. */

@@ -245,12 +245,23 @@ bool takt_steps_cycle(struct steps *s, const struct step_port *port, const struc
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         s->braking[i] = s->next.at.at[i] - s->now.at[i];
     }
+    s->rests = false;
     step_to_next(s, port);
     s->next = (struct steps_target){.at = *setpoint, .has_curve = curve != NULL, .number = number};
     if (curve != NULL) {
         s->next.curve = *curve;
     }
     return s->fault.code == TAKT_OK;
+}
+
+static bool brakes(const struct steps *s)
+{
+    bool any = false;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        any = any || (steps_has(s, i) && s->braking[i] != 0.0);
+    }
+    return any;
 }
 
 /* Each cycle's way is shorter than the last by a T^2, until it is none. */
@@ -263,6 +274,7 @@ void takt_steps_brake(struct steps *s, const struct step_port *port)
         return;
     }
     read_encoders(s, port);
+    s->rests = !brakes(s);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const double less = s->config.axis[i].stop_mm_s2 * cycle_s * cycle_s;
         const double way = maths_max(0.0, maths_abs(s->braking[i]) - less);

@@ -66,6 +66,12 @@ bool takt_steps_cycle(struct steps *s, const struct step_port *port, const struc
 /* Instead of takt_steps_cycle, after a fault: every axis brakes by itself. */
 void takt_steps_brake(struct steps *s, const struct step_port *port);
 
+/* Have they come to rest so? */
+static inline bool steps_rest(const struct steps *s)
+{
+    return s->rests;
+}
+
 /* After a fault, at rest: the axes are where they stand, as reported; the fault is forgotten. */
 void takt_steps_restart(struct steps *s);
 

@@ -34,6 +34,7 @@ struct steps {
     int64_t at[AXIS_COUNT];     /* steps made */
     struct point read;          /* by the encoders, at the start of the last cycle */
     double braking[AXIS_COUNT]; /* takt_steps_brake: mm in the cycle */
+    bool rests;                 /* takt_steps_brake: at rest, as read */
     uint32_t number;            /* of the path */
     struct steps_path path;
     int64_t last_ns;             /* time of the last pulse, from the start of this cycle */

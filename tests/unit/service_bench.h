@@ -25,6 +25,7 @@ static struct tool tools[1];
 static struct machine machine;
 static const struct correction_tables *correction; /* NULL: none */
 static struct service_lines service_lines;         /* of a console; all NULL: none */
+static struct step_port step_port;                 /* of a machine with step drives */
 static struct inputs world;
 static struct source_text program_text;
 static const char *program, *staged;
@@ -66,6 +67,7 @@ static void bench_start(void)
     const struct service_config config = {
         .machine = &machine,
         .can = can_single(bus_attach(&bus, NULL)),
+        .step = step_port,
         .tools = tools,
         .tools_count = 1,
         .reader = &service_reader,
