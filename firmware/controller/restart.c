@@ -24,6 +24,7 @@ void takt_controller_start_program(struct controller *c, const struct controller
     takt_motion_init(&c->motion, &c->path, start, c->machine.override_proportional != 0);
     takt_controller_feed_init(c, config->compiled);
     takt_interpolator_restart(&c->interpolator);
+    takt_steps_leave_path(&c->steps);
     takt_spindle_sync_restart(&c->sync);
     takt_correction_forget_setup(&c->correction);
     c->keeps_outputs = config->keeps_outputs;

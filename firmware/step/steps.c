@@ -254,6 +254,13 @@ bool takt_steps_cycle(struct steps *s, const struct step_port *port, const struc
     return s->fault.code == TAKT_OK;
 }
 
+void takt_steps_leave_path(struct steps *s)
+{
+    s->path.active = false;
+    s->next.has_curve = false;
+    s->number = 0;
+}
+
 static bool brakes(const struct steps *s)
 {
     bool any = false;

@@ -63,6 +63,9 @@ void takt_steps_init(struct steps *s, const struct steps_config *config, const s
 bool takt_steps_cycle(struct steps *s, const struct step_port *port, const struct point *setpoint,
                       const struct curve *curve, uint32_t number);
 
+/* At rest: blocks are numbered anew. */
+void takt_steps_leave_path(struct steps *s);
+
 /* Instead of takt_steps_cycle, after a fault: every axis brakes by itself. */
 void takt_steps_brake(struct steps *s, const struct step_port *port);
 

@@ -166,6 +166,21 @@ static void test_until_drives_report_again_they_are_shown_where_they_were(void)
     TEST_ASSERT_EQUAL_INT(PANEL_IDLE, takt_service_get_state(&service));
 }
 
+static void test_every_jog_is_stepped_by_the_evaluation_function_of_its_line(void)
+{
+    machine.step_form = STEPS_IMPROVED;
+    start_with_steps();
+    must(REGISTER_JOG_DISTANCE, 1000);
+    for (enum axis axis = AXIS_X; axis <= AXIS_Z; axis++) {
+        start_jog(axis, REGISTER_JOG_PLUS);
+        run(60);
+        TEST_ASSERT_TRUE(service.controller.steps.path.active);
+        TEST_ASSERT_EQUAL_DOUBLE(1, service.controller.steps.path.curve.end.at[axis]);
+        wait_for(PANEL_IDLE);
+        TEST_ASSERT_EQUAL_INT64(1000, shown((enum panel_id)(REGISTER_POSITION_X + axis)));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -175,5 +190,6 @@ int main(void)
     RUN_TEST(test_step_drives_that_brake_are_left_alone_until_they_stand);
     RUN_TEST(test_positions_of_step_drives_are_shown);
     RUN_TEST(test_until_drives_report_again_they_are_shown_where_they_were);
+    RUN_TEST(test_every_jog_is_stepped_by_the_evaluation_function_of_its_line);
     return UNITY_END();
 }
