@@ -8,6 +8,7 @@
 #include "controller/controller_steps.h"
 #include "controller/outputs.h"
 #include "controller/restart.h"
+#include "program/changes.h"
 
 #include <string.h>
 
@@ -50,6 +51,7 @@ static void controller_fail(struct controller *c, const struct diagnostic *fault
 /* Everything has been done, and no end of the program came: an error ended it. */
 static void controller_end_in_error(struct controller *c)
 {
+    c->reached = CHANGES_ALL;
     controller_fail(c, &c->program_error);
 }
 
@@ -156,6 +158,7 @@ static void follow_events(struct controller *c)
         if (!path_at(&c->path, i)->motion) {
             struct move move;
 
+            c->waits++;
             takt_path_read_move(&c->path, i, &move);
             takt_outputs_apply(&c->outputs, &c->surface, &move);
             takt_spindle_watch_pass(&c->spindle, &move);
@@ -176,6 +179,7 @@ static void end_program(struct controller *c)
     if (!c->keeps_outputs) {
         takt_outputs_apply(&c->outputs, &c->surface, &path_first(&c->path)->move);
     }
+    c->reached = CHANGES_ALL;
     c->state = CONTROLLER_COMPLETED;
 }
 
@@ -298,10 +302,19 @@ static void interpolate(struct controller *c, const struct block *block)
     }
 }
 
+/* Blocks have the number of the motion that they are, or that is before them. */
+static void note_place(struct controller *c, const struct block *block)
+{
+    const bool waits = !block_is_motion(block) && c->motion.current == c->path.first;
+
+    c->reached = block->number + c->waits + (waits ? 1U : 0U);
+}
+
 static void complete_record(struct controller *c, const struct inputs *in)
 {
     const struct block *block = motion_block(&c->motion);
 
+    note_place(c, block);
     interpolate(c, block);
     takt_correction_cycle(&c->correction, &c->record.cmd, &block->move, &c->record.set);
     controller_shape_cycle(c, move_is_synchronized(&block->move));

@@ -5,6 +5,14 @@
 #include "controller/controller.h"
 
 #include "base/assert.h"
+#include "program/changes.h"
+
+static void push(struct controller *c, const struct move *move)
+{
+    c->pushed++;
+    takt_changes_place(&c->reader->program, move->changes, c->pushed);
+    takt_path_push(&c->path, move);
+}
 
 /* The axes come to rest before it, where it waits. */
 static void hold_back(struct controller *c, const struct move *move)
@@ -14,7 +22,7 @@ static void hold_back(struct controller *c, const struct move *move)
     TAKT_ASSERT(takt_path_has_room(&c->path));
     stop.kind = MOVE_DWELL;
     stop.dwell_s = 0.0;
-    takt_path_push(&c->path, &stop);
+    push(c, &stop);
     c->program_waits = true;
 }
 
@@ -22,7 +30,7 @@ static void hold_back(struct controller *c, const struct move *move)
 static void take_held(struct controller *c)
 {
     if (takt_controller_probe_begin(&c->probe)) {
-        takt_path_push(&c->path, &c->probe.move);
+        push(c, &c->probe.move);
         c->program_waits = false;
     }
 }
@@ -40,7 +48,7 @@ static void take_move(struct controller *c, struct move *move)
     }
     if (takt_controller_probe_ask(&c->probe, move, machine_cycle_s(&c->machine),
                                   takt_drives_have_probe(&c->drives))) {
-        takt_path_push(&c->path, move);
+        push(c, move);
     } else {
         hold_back(c, move);
     }

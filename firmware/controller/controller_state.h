@@ -38,6 +38,9 @@ struct controller {
     bool (*refuse)(void *listener, const struct diagnostic *why); /* as of the configuration */
     bool program_ended; /* nothing more comes from the program: its end or an error in it */
     bool has_record;
+    /* motions of the program, and what stands between them: on the path so far, and begun */
+    uint32_t pushed, reached;
+    uint32_t waits; /* of what stands between motions, passed */
     struct diagnostic
         program_error; /* TAKT_OK: none. Reported when everything before it has been done */
     struct outputs outputs;

@@ -4,6 +4,7 @@
 #include "controller/controller_feed.h"
 #include "controller/controller_shape.h"
 #include "controller/controller_steps.h"
+#include "program/changes.h"
 
 #include <string.h>
 
@@ -35,6 +36,7 @@ void takt_controller_start_program(struct controller *c, const struct controller
     c->program_ended = false;
     c->program_error.code = TAKT_OK;
     c->has_record = false;
+    c->pushed = c->reached = c->waits = 0;
     c->record.cmd = *start;
     c->state = CONTROLLER_RUNNING;
 }
@@ -44,6 +46,12 @@ void takt_controller_drop_program(struct controller *c)
     c->program_ended = true;
     c->has_record = false;
     c->state = CONTROLLER_COMPLETED;
+}
+
+bool takt_controller_take_back(struct controller *c)
+{
+    c->program_ended = true;
+    return takt_changes_take_back(&c->reader->program, c->reached);
 }
 
 void takt_controller_quieten(struct controller *c)

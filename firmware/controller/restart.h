@@ -24,6 +24,13 @@ void takt_controller_start_program(struct controller *c, const struct controller
 void takt_controller_drop_program(struct controller *c);
 
 /*
+ * Background, after the program has been given up or has failed: what its lines have made of
+ * offsets and other parameters that last is taken back, if nothing behind them has been begun.
+ * False: there were so many such lines that some of it could not be.
+ */
+bool takt_controller_take_back(struct controller *c);
+
+/*
  * All drives brake by themselves, outputs that move or turn something go off. CONTROLLER_FAULTED,
  * for this reason or fault.
  */

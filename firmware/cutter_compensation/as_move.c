@@ -66,6 +66,7 @@ static void finish_motion(struct cutter_compensation *o, const struct compensati
     m->kind = (enum move_kind)i->move;
     m->path = (enum move_path)i->path;
     m->line = i->line;
+    m->changes = (uint8_t)(o->changes + ((i->changes - o->changes) & CHANGES_MASK));
     memcpy(move_pace(m), motion->pace, MOVE_PACE_BYTES);
     m->overrides = i->overrides;
     m->correction_off = i->correction_off;

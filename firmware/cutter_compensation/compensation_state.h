@@ -38,6 +38,9 @@ struct compensation_motion {
     unsigned char pace[MOVE_PACE_BYTES];
 };
 
+/* Of the number of changes in an item: there are never so many between two motions of a contour. */
+#define CHANGES_MASK 15U
+
 /* A move, in as few bytes as there is no other way to have them back. */
 struct compensation_item {
     uint32_t line;
@@ -54,6 +57,7 @@ struct compensation_item {
     bool left_out : 1;     /* swallowed by an inner corner; kept until its end is known */
     bool entry : 1;        /* comes from outside the contour: starts where the tool is */
     bool across : 1;       /* moves other axes too */
+    uint8_t changes : 4;   /* of struct move, the lower half; ways and standing motions */
     union {
         struct compensation_wanted wanted;     /* of a way; of a corner, of the way before it */
         struct compensation_motion motion;     /* COMPENSATION_STANDING */
@@ -90,6 +94,7 @@ struct cutter_compensation {
     bool gap;            /* an inner corner has begun and its end is not known */
     double gouge_mm;     /* gap: what the tool would cut away */
     uint32_t gouge_line; /* gap: of the move that began it */
+    uint8_t changes;     /* of struct move, given out last, or of the contour's first motion */
     bool closed;         /* nothing is added to the contour any more */
     bool broken;         /* there was an error: what is left of the contour is dropped */
     bool is_waiting;     /* closed: a move comes after the contour */

@@ -155,6 +155,7 @@ static struct compensation_piece piece_of(const struct cutter_compensation *o, s
                  .path = (uint8_t)m->path,
                  .overrides = (uint8_t)m->overrides,
                  .correction_off = m->correction_off,
+                 .changes = m->changes & CHANGES_MASK,
                  .cutter_entry = m->cutter_entry,
                  .wanted = {.centre = {m->centre_mm[0], m->centre_mm[1]},
                             .base_mm = m->base_radius_mm}},
@@ -205,6 +206,7 @@ static bool take_motion(struct cutter_compensation *o, struct move *m, struct di
 
     if (!o->started) {
         o->pattern = *m;
+        o->changes = m->changes;
     }
     if (!takt_contour_wanted(&piece.item, &wanted)) {
         take_standing(o, m, &piece);
@@ -321,6 +323,7 @@ static bool give_out(struct cutter_compensation *o, const struct program *p, str
     TAKT_ASSERT(o->count > 0);
     takt_compensation_as_move(o, i, move);
     takt_contour_drop_first(o);
+    o->changes = move->changes;
     if (checked && !check_travel(o, p, move, d)) {
         return false;
     }

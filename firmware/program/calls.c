@@ -1,6 +1,7 @@
 #include "program/calls.h"
 
 #include "base/assert.h"
+#include "program/changes.h"
 #include "program/expression.h"
 #include "program/flow.h"
 #include "program/lexer.h"
@@ -72,8 +73,13 @@ static bool restore_modes(struct program *p, const struct program_frame *frame,
     if (!takt_saved_modes_restore(p, frame)) {
         return takt_oword_error(p, TAKT_ERROR_CUTTER_ON, o, 0.0);
     }
-    return takt_parameters_set(p->config.parameters, PARAMETER_SYSTEM, p->modes.system) ||
-           takt_oword_error(p, TAKT_ERROR_PARAMETERS_FULL, o, 0.0);
+    const double before = takt_parameters_get(p->config.parameters, PARAMETER_SYSTEM);
+
+    if (!takt_parameters_set(p->config.parameters, PARAMETER_SYSTEM, p->modes.system)) {
+        return takt_oword_error(p, TAKT_ERROR_PARAMETERS_FULL, o, 0.0);
+    }
+    takt_changes_note(p, PARAMETER_SYSTEM, before);
+    return true;
 }
 
 /*

@@ -219,6 +219,12 @@ void takt_coordinates_open(struct program *p)
     }
 }
 
+void takt_coordinates_reload(struct program *p)
+{
+    memset(&p->modes.axis_offset, 0, sizeof(p->modes.axis_offset));
+    takt_coordinates_open(p);
+}
+
 /* The system in use already is not loaded again, as in LinuxCNC. */
 bool takt_coordinates_select(struct program *p, const struct program_code *code)
 {

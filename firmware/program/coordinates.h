@@ -59,6 +59,8 @@ double takt_coordinates_from_parameter(double value, enum axis axis);
  * Takes the coordinate system and the axis offsets from the parameters, at the start of a program.
  */
 void takt_coordinates_open(struct program *p);
+/* The same later: other parameters are in force. */
+void takt_coordinates_reload(struct program *p);
 
 /* G54 ... G59.3; argument: 1 ... 9 */
 bool takt_coordinates_select(struct program *p, const struct program_code *code);

@@ -136,6 +136,7 @@ struct move {
     uint8_t contour_side;   /* enum cutter_side the contour was programmed with */
     uint8_t
         cutter_orientation; /* 1 to 8: a lathe tool, led by a point beside its nose; in G18 alone */
+    uint8_t changes;        /* of parameters, that come before it: their number (changes.h) */
     bool cutter_entry : 1;  /* nothing has moved in the plane yet since compensation is on */
     bool probe_away : 1;    /* MOVE_PROBE: ends when contact is lost (G38.4, G38.5), else made */
     bool probe_optional : 1; /* MOVE_PROBE: to reach the end is no error (G38.3, G38.5) */

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "program/approach.h"
+#include "program/changes.h"
 #include "program/comment.h"
 #include "program/contour.h"
 #include "program/coordinates.h"
@@ -35,6 +36,7 @@ void takt_program_open(struct program *p, const struct program_config *config,
     p->phase = PROGRAM_AT_START;
     p->question = QUESTION_NONE;
     p->tools.count = 0;
+    takt_changes_open(p);
     takt_cycles_open(p);
     takt_modes_open(p);
     takt_coordinates_open(p);
@@ -73,6 +75,8 @@ static bool run_line(struct program *p)
     const struct program_modes before = p->modes;
 
     if (takt_words_assign(p) && run_steps(p, &before)) {
+        takt_words_note_changes(p);
+        takt_tool_values_note_changes(p);
         return true;
     }
     takt_words_take_back(p);
@@ -286,6 +290,7 @@ enum program_result takt_program_next(struct program *p, struct move *move,
         }
     }
     p->question = question_of(move);
+    takt_changes_stamp(p, move);
     return PROGRAM_MOVE;
 }
 

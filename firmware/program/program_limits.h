@@ -20,6 +20,10 @@
 #ifndef PROGRAM_TOOL_CHANGES_MAX
 #define PROGRAM_TOOL_CHANGES_MAX 16
 #endif
+/* Changes of offsets, tools and other things that last, which can be taken back. */
+#ifndef PROGRAM_CHANGES_MAX
+#define PROGRAM_CHANGES_MAX 64
+#endif
 /* L of a cycle, pecks of a hole, passes of a thread: what goes beyond is a mistake. */
 #define PROGRAM_REPEATS_MAX 10000
 /* Moves, fillets and chamfers of the profile of G70 to G72. */

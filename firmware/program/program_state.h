@@ -256,6 +256,24 @@ struct program_tools {
     unsigned count_before;
 };
 
+/* A parameter that a line has set: changes.h. */
+struct program_change {
+    double before;
+    uint32_t place;
+    uint16_t parameter;
+    uint8_t number; /* those without a move in between have the same */
+    bool placed;
+};
+
+struct program_changes {
+    struct program_change change[PROGRAM_CHANGES_MAX]; /* ring, the oldest first */
+    unsigned first, count;
+    uint8_t number;   /* of the newest, modulo 256 */
+    bool open;        /* no move has come since */
+    bool behind_move; /* any has: changes before the first one are done as they are read */
+    bool full;        /* the oldest have been forgotten */
+};
+
 /* A spline under way, in the plane and machine coordinates. */
 struct program_spline {
     struct nurbs nurbs;
@@ -328,6 +346,7 @@ struct program {
     struct program_flow flow;
     struct program_approach approach;
     struct program_tools tools;
+    struct program_changes changes;
     struct program_cycle cycle;
     union {
         struct move queue[PROGRAM_QUEUE_MAX]; /* made by the current line, not yet fetched */

@@ -1,5 +1,6 @@
 #include "program/tool_values.h"
 
+#include "program/changes.h"
 #include "program/report.h"
 
 #include <stddef.h>
@@ -51,6 +52,13 @@ void takt_tool_values_begin_line(struct program *p)
 {
     p->tools.changed = NONE;
     p->tools.count_before = p->tools.count;
+}
+
+void takt_tool_values_note_changes(struct program *p)
+{
+    if (p->tools.changed != NONE) {
+        takt_changes_note_tool(p, (unsigned)p->tools.changed);
+    }
 }
 
 void takt_tool_values_take_back(struct program *p)

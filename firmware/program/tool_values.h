@@ -19,5 +19,7 @@ struct tool *takt_tool_values_change(struct program *p, enum step step, uint32_t
 /* Before each line, and after one with an error. */
 void takt_tool_values_begin_line(struct program *p);
 void takt_tool_values_take_back(struct program *p);
+/* After one that counts (changes.h). */
+void takt_tool_values_note_changes(struct program *p);
 
 #endif

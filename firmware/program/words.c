@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/maths.h"
+#include "program/changes.h"
 #include "program/circular.h"
 #include "program/contour.h"
 #include "program/expression.h"
@@ -401,6 +402,18 @@ void takt_words_take_back(struct program *p)
     }
     p->words.assignments = 0;
     p->names.count = p->words.names_before;
+}
+
+/* What has been swapped is what was there before. */
+void takt_words_note_changes(struct program *p)
+{
+    for (unsigned i = 0; i < p->words.assignments; i++) {
+        const struct program_assignment *a = &p->words.assignment[i];
+
+        if (a->reference.number != 0) {
+            takt_changes_note(p, a->reference.number, a->value);
+        }
+    }
 }
 
 bool takt_words_whole(struct program *p, char letter, double low, double high, uint32_t *whole)

@@ -22,6 +22,9 @@ bool takt_words_store(struct program *p, enum step step, unsigned number, double
 
 void takt_words_take_back(struct program *p);
 
+/* The line counts: what it has set that lasts can be taken back with it (changes.h). */
+void takt_words_note_changes(struct program *p);
+
 static inline bool words_has(const struct program *p, char letter)
 {
     return (p->words.given & LETTER_BIT(letter)) != 0;

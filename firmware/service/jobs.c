@@ -82,7 +82,9 @@ void takt_service_end_job(struct service *s, enum panel_outcome outcome)
         s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
     }
     if (s->job != SERVICE_NOTHING) {
-        keep_tools(s);
+        s->takes_back = outcome != PANEL_OUTCOME_COMPLETED;
+        if (!s->takes_back)
+            keep_tools(s);
         s->outcome = outcome;
         s->runs++;
     }
@@ -91,6 +93,20 @@ void takt_service_end_job(struct service *s, enum panel_outcome outcome)
     s->hold = PANEL_HOLD_NONE;
     s->giving_up = false;
     s->settings.spindle_stop = false;
+}
+
+void takt_service_take_back(struct service *s)
+{
+    struct diagnostic why;
+
+    if (!s->takes_back)
+        return;
+    s->takes_back = false;
+    if (!takt_controller_take_back(&s->controller)) {
+        takt_diagnostic_set(&why, TAKT_ERROR_CHANGES_AHEAD, 0, 0, "", 0, PROGRAM_CHANGES_MAX);
+        takt_service_raise(s, PANEL_ALARM_PROGRAM, &why);
+    }
+    keep_tools(s);
 }
 
 void takt_service_give_up(struct service *s)

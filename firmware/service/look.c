@@ -3,6 +3,7 @@
  */
 #include "base/assert.h"
 #include "base/maths.h"
+#include "program/changes.h"
 #include "program/coordinates.h"
 #include "program/parameters.h"
 #include "service/service_private.h"
@@ -231,16 +232,17 @@ static void look_at_settings(const struct service *s, uint32_t *value)
         value[REGISTER_RISE_X + i] = (uint32_t)settings->rise[i];
 }
 
-/* Parameters hold mm and degrees already. */
+/* Parameters hold mm and degrees already. What has been read ahead is not in force yet. */
 static void look_at_work_offset(const struct service *s, uint32_t *value)
 {
+    const struct program *p = &s->controller.reader->program;
     const unsigned first =
         PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE;
 
     TAKT_ASSERT(s->settings.work_system >= 1);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value[REGISTER_WORK_OFFSET_X + i] =
-            counts(takt_parameters_get(s->config.parameters, first + i), COUNTS_PER_UNIT,
+            counts(takt_changes_value(p, first + i, s->controller.reached), COUNTS_PER_UNIT,
                    REGISTER_WORK_OFFSET_X);
 }
 

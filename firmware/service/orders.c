@@ -428,6 +428,7 @@ enum panel_verdict takt_service_order(struct service *s, const struct panel_orde
     TAKT_ASSERT(order->count <= PANEL_ORDER_MAX);
     if (is_ambiguous(order))
         return PANEL_WRONG_VALUE;
+    takt_service_take_back(s);
     verdict = check_order(s, order);
     if (verdict != PANEL_DONE) {
         s->settings = before;

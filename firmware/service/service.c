@@ -330,6 +330,7 @@ void takt_service_background(struct service *s)
     s->is_planning = true;
     takt_controller_background(&s->controller);
     s->is_planning = false;
+    takt_service_take_back(s);
 }
 
 void takt_service_cycle(struct service *s, const struct inputs *inputs)

@@ -29,6 +29,8 @@ void takt_service_start_home(struct service *s);
 void takt_service_go_to_zero(struct service *s);
 /* What ran has ended by itself, or has been given up. */
 void takt_service_end_job(struct service *s, enum panel_outcome outcome);
+/* Of what did not come to its end: what its lines behind that place have set counts no more. */
+void takt_service_take_back(struct service *s);
 /* The plan that has come, if any; and what comes of it is dropped. */
 enum service_plan takt_service_open_plan(const struct service *s, struct replay_source *source);
 void takt_service_forget_plan(struct service *s);

@@ -56,6 +56,7 @@ struct service {
     enum panel_hold hold; /* why the feed is held; PANEL_HOLD_NONE: it is not */
     bool finds_home;      /* the drives look for their homes; then comes the way to zero */
     bool giving_up;       /* what runs is dropped as soon as it is at rest */
+    bool takes_back;      /* the background takes back what has not been reached */
     uint32_t held_block;  /* at whose end a single block has been held; 0: none yet */
     bool resets_spindle;  /* its drive is to be reset */
     /* the background is at work: a cycle that interrupts it drops nothing it works on */

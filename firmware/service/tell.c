@@ -2,17 +2,18 @@
  * What a console asks for besides the registers.
  */
 #include "base/maths.h"
-#include "program/parameters.h"
+#include "program/changes.h"
 #include "service/service_private.h"
 
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 #define MM_MIN_PER_MM_S 60.0
 
-/* Parameters hold mm and degrees. */
+/* Parameters hold mm and degrees. What has been read ahead is not in force yet. */
 static void tell_parameters(const struct service *s, unsigned first, double value[AXIS_COUNT])
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        value[i] = takt_parameters_get(s->config.parameters, first + i);
+        value[i] =
+            takt_changes_value(&s->controller.reader->program, first + i, s->controller.reached);
 }
 
 static void tell_point(const struct point *at, double value[AXIS_COUNT])

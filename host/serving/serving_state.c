@@ -3,6 +3,7 @@
 #include "serving/serving_state.h"
 
 #include "cli/message.h"
+#include "program/changes.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -256,6 +257,8 @@ static void fill(const struct serving_state *st, const struct service *service, 
     state->program_crc = service->program_crc;
     state->line = takt_service_get_cut_line(service);
     state->parameters = *service->config.parameters;
+    (void)takt_changes_leave_out(&service->controller.reader->program, service->controller.reached,
+                                 &state->parameters);
     state->tools_count = st->tools_count;
     if (st->tools_count > 0)
         memcpy(state->tools, service->config.tools, st->tools_count * sizeof *state->tools);

@@ -2,7 +2,7 @@
  * One program after another: what is given up or stopped at once leaves nothing behind that the
  * next one would go by.
  */
-#include "base/maths.h"
+#include "program/parameters.h"
 #include "service_bench.h"
 
 #define JOG_STEP_MM 0.02 /* more than 600 mm/min make of a cycle */
@@ -181,6 +181,169 @@ static void test_every_jog_is_stepped_by_the_evaluation_function_of_its_line(voi
     }
 }
 
+static double parameter(unsigned number)
+{
+    return takt_parameters_get(&parameters, number);
+}
+
+/* The program is given up in a line, and idle. */
+static void give_up_in(const char *text, int64_t line)
+{
+    load(text);
+    must(REGISTER_CYCLE_START, 1);
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && shown(REGISTER_ACTIVE_LINE) != line; i++)
+        cycle();
+    run(20);
+    TEST_ASSERT_EQUAL_INT64(line, shown(REGISTER_ACTIVE_LINE));
+    must(REGISTER_RESET, 1);
+    wait_for(PANEL_IDLE);
+    run(1);
+    TEST_ASSERT_EQUAL_INT64(line, shown(REGISTER_CUT_LINE));
+    TEST_ASSERT_EQUAL_STRING("", alarm_text());
+}
+
+static const char offsets[] =
+    "F600\nG1 X20\nG10 L2 P1 X50 Y7\nG1 X0\nG92 Z5\nG28.1\nG55\nG1 Z1\nM2\n";
+
+static void test_offsets_of_lines_that_were_not_reached_do_not_count(void)
+{
+    bench_start();
+    give_up_in(offsets, 2);
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_SYSTEM_OFFSET));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_SYSTEM_OFFSET + 1));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_AXIS_APPLIED));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_AXIS_OFFSET + 2));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_REFERENCE_1 + 2));
+    TEST_ASSERT_EQUAL_DOUBLE(1, parameter(PARAMETER_SYSTEM));
+    TEST_ASSERT_EQUAL_INT64(shown(REGISTER_POSITION_X), shown(REGISTER_WORK_POSITION_X));
+    TEST_ASSERT_EQUAL_INT64(shown(REGISTER_POSITION_Z), shown(REGISTER_WORK_POSITION_Z));
+}
+
+static void test_offsets_of_lines_that_were_reached_count(void)
+{
+    bench_start();
+    give_up_in(offsets, 4);
+    TEST_ASSERT_EQUAL_DOUBLE(50, parameter(PARAMETER_SYSTEM_OFFSET));
+    TEST_ASSERT_EQUAL_DOUBLE(7, parameter(PARAMETER_SYSTEM_OFFSET + 1));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_AXIS_APPLIED));
+    TEST_ASSERT_EQUAL_INT64(shown(REGISTER_POSITION_X) - 50000, shown(REGISTER_WORK_POSITION_X));
+}
+
+static void test_an_offset_is_shown_from_where_it_counts(void)
+{
+    bench_start();
+    load(offsets);
+    must(REGISTER_CYCLE_START, 1);
+    while (shown(REGISTER_ACTIVE_LINE) != 4) {
+        TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_WORK_OFFSET_X));
+        cycle();
+    }
+    TEST_ASSERT_EQUAL_INT64(50000, shown(REGISTER_WORK_OFFSET_X));
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(50000, shown(REGISTER_WORK_OFFSET_X));
+    TEST_ASSERT_EQUAL_DOUBLE(1, parameter(PARAMETER_AXIS_APPLIED));
+}
+
+static void test_a_program_goes_on_from_its_cut_line_in_the_right_place(void)
+{
+    bench_start();
+    load("F1200\nG1 X20\nG10 L20 P1 X0\nG1 X0\nX30\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    run(500);
+    must(REGISTER_RESET, 1);
+    wait_for(PANEL_IDLE);
+    must(REGISTER_START_LINE, shown(REGISTER_CUT_LINE));
+    must(REGISTER_CYCLE_START, 1);
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
+    TEST_ASSERT_EQUAL_INT64(50000, shown(REGISTER_POSITION_X));
+}
+
+static void test_an_emergency_stop_and_a_fault_of_the_program_take_back_as_much(void)
+{
+    bench_start();
+    load(offsets);
+    must(REGISTER_CYCLE_START, 1);
+    run(500);
+    push_emergency_stop(500);
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_SYSTEM_OFFSET));
+    must(REGISTER_RESET, 1);
+    wait_for(PANEL_IDLE);
+    load("F600\nG1 X1\nG10 L2 P1 X50\nG1 Q\n");
+    must(REGISTER_CYCLE_START, 1);
+    wait_for(PANEL_ALARM);
+    run(1);
+    TEST_ASSERT_EQUAL_DOUBLE(50, parameter(PARAMETER_SYSTEM_OFFSET)); /* the line was reached */
+}
+
+/* Each round, stops and smoothed motions count for themselves. */
+static void test_rounds_of_a_loop_are_told_from_each_other(void)
+{
+    static const char text[] = "G64 P0.05 F600\nO1 repeat [20]\nG91 G1 X1\nY1\nX-1\nY-1\nM3\nG90\n"
+                               "G10 L2 P2 X[#5241+1]\nM0\nO1 endrepeat\nM2\n";
+
+    bench_start();
+    for (unsigned rounds = 0; rounds < 4; rounds++) {
+        takt_parameters_clear(&parameters);
+        load(text);
+        must(REGISTER_CYCLE_START, 1);
+        for (unsigned i = 0; i < rounds; i++) {
+            wait_for(PANEL_HELD);
+            must(REGISTER_RESUME, 1);
+            wait_for(PANEL_RUNNING);
+        }
+        run(50);
+        must(REGISTER_RESET, 1);
+        wait_for(PANEL_IDLE);
+        run(1);
+        TEST_ASSERT_EQUAL_DOUBLE(rounds,
+                                 parameter(PARAMETER_SYSTEM_OFFSET + PARAMETER_SYSTEM_STRIDE));
+    }
+}
+
+static void test_changes_inside_a_compensated_contour_count_where_they_stand(void)
+{
+    static const char text[] =
+        "F600 G10 L1 P3 R1\nT3 M6\nG41 D3 G1 X10 Y5\nX20\nG10 L2 P2 X1\nX30\n"
+        "G10 L2 P2 X2\nY20\nG10 L2 P2 X3\nX10\nG40 X0 Y0\nM2\n";
+
+    bench_start();
+    give_up_in(text, 4);
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_SYSTEM_OFFSET + PARAMETER_SYSTEM_STRIDE));
+    run_line("G0 X0 Y0");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    give_up_in(text, 6);
+    TEST_ASSERT_EQUAL_DOUBLE(1, parameter(PARAMETER_SYSTEM_OFFSET + PARAMETER_SYSTEM_STRIDE));
+    run_line("G0 X0 Y0");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    give_up_in(text, 10);
+    TEST_ASSERT_EQUAL_DOUBLE(3, parameter(PARAMETER_SYSTEM_OFFSET + PARAMETER_SYSTEM_STRIDE));
+}
+
+static void test_tools_of_lines_that_were_not_reached_stay_as_they_are(void)
+{
+    static const char text[] = "F600\nG1 X20\nG10 L1 P3 Z12\nG1 X0\nM2\n";
+
+    bench_start();
+    give_up_in(text, 2);
+    TEST_ASSERT_EQUAL_DOUBLE(0, tools[0].offset.at[AXIS_Z]);
+    give_up_in(text, 4);
+    TEST_ASSERT_EQUAL_DOUBLE(12, tools[0].offset.at[AXIS_Z]);
+}
+
+/* More than are kept: it is said. */
+static void test_changes_that_cannot_be_taken_back_are_an_alarm(void)
+{
+    bench_start();
+    load("F60\nG1 X1\nO1 repeat [100]\nG10 L2 P2 X[#5241+1]\nG1 X[2-#<_x>]\nO1 endrepeat\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    run(500);
+    must(REGISTER_RESET, 1);
+    for (unsigned i = 0; i < 500; i++)
+        cycle();
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_CHANGES_AHEAD, service.alarm_text.code);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -189,7 +352,16 @@ int main(void)
     RUN_TEST(test_after_an_emergency_stop_step_drives_go_on_from_where_they_stand);
     RUN_TEST(test_step_drives_that_brake_are_left_alone_until_they_stand);
     RUN_TEST(test_positions_of_step_drives_are_shown);
-    RUN_TEST(test_until_drives_report_again_they_are_shown_where_they_were);
     RUN_TEST(test_every_jog_is_stepped_by_the_evaluation_function_of_its_line);
+    RUN_TEST(test_until_drives_report_again_they_are_shown_where_they_were);
+    RUN_TEST(test_offsets_of_lines_that_were_not_reached_do_not_count);
+    RUN_TEST(test_offsets_of_lines_that_were_reached_count);
+    RUN_TEST(test_an_offset_is_shown_from_where_it_counts);
+    RUN_TEST(test_a_program_goes_on_from_its_cut_line_in_the_right_place);
+    RUN_TEST(test_an_emergency_stop_and_a_fault_of_the_program_take_back_as_much);
+    RUN_TEST(test_rounds_of_a_loop_are_told_from_each_other);
+    RUN_TEST(test_changes_inside_a_compensated_contour_count_where_they_stand);
+    RUN_TEST(test_tools_of_lines_that_were_not_reached_stay_as_they_are);
+    RUN_TEST(test_changes_that_cannot_be_taken_back_are_an_alarm);
     return UNITY_END();
 }
