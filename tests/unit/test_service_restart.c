@@ -320,6 +320,23 @@ static void test_changes_inside_a_compensated_contour_count_where_they_stand(voi
     TEST_ASSERT_EQUAL_DOUBLE(3, parameter(PARAMETER_SYSTEM_OFFSET + PARAMETER_SYSTEM_STRIDE));
 }
 
+static void test_changes_around_questions_and_restored_modes_count_where_they_stand(void)
+{
+    static const char text[] =
+        "F600\nM66 P0 L0\nG38.3 X5\nG10 L20 P1 X0\nM66 P0 L0\nG1 X20\nO1 sub\nM70\nG55\nG1 Y20\n"
+        "M72\nO1 endsub\nO1 call\nG10 L2 P3 X1\nG1 X1\nM2\n";
+
+    bench_start();
+    give_up_in(text, 6);
+    TEST_ASSERT_EQUAL_DOUBLE(5, parameter(PARAMETER_SYSTEM_OFFSET));
+    TEST_ASSERT_EQUAL_DOUBLE(1, parameter(PARAMETER_SYSTEM));
+    run_line("G53 G0 X0 Y0");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    give_up_in(text, 10);
+    TEST_ASSERT_EQUAL_DOUBLE(2, parameter(PARAMETER_SYSTEM));
+    TEST_ASSERT_EQUAL_DOUBLE(0, parameter(PARAMETER_SYSTEM_OFFSET + 2 * PARAMETER_SYSTEM_STRIDE));
+}
+
 static void test_tools_of_lines_that_were_not_reached_stay_as_they_are(void)
 {
     static const char text[] = "F600\nG1 X20\nG10 L1 P3 Z12\nG1 X0\nM2\n";
@@ -361,6 +378,7 @@ int main(void)
     RUN_TEST(test_an_emergency_stop_and_a_fault_of_the_program_take_back_as_much);
     RUN_TEST(test_rounds_of_a_loop_are_told_from_each_other);
     RUN_TEST(test_changes_inside_a_compensated_contour_count_where_they_stand);
+    RUN_TEST(test_changes_around_questions_and_restored_modes_count_where_they_stand);
     RUN_TEST(test_tools_of_lines_that_were_not_reached_stay_as_they_are);
     RUN_TEST(test_changes_that_cannot_be_taken_back_are_an_alarm);
     return UNITY_END();
