@@ -136,9 +136,15 @@ static void take_answer(struct controller *c)
     takt_cutter_compensation_answer(&c->reader->offset, &c->reader->program, &answer);
 }
 
+/* It is over or was given up, perhaps by a cycle that has interrupted the background. */
+static bool is_over(const struct controller *c)
+{
+    return c->state >= CONTROLLER_STOPPING;
+}
+
 static bool can_read(struct controller *c)
 {
-    return !c->program_ended && !c->program_waits && !c->program_late &&
+    return !is_over(c) && !c->program_ended && !c->program_waits && !c->program_late &&
            takt_path_has_room(&c->path);
 }
 
@@ -157,6 +163,9 @@ static bool waits_for_text(struct controller *c)
 
 void takt_controller_background(struct controller *c)
 {
+    if (is_over(c)) {
+        return;
+    }
     take_answer(c);
     if (c->replays) {
         takt_replay_read(&c->replay, &c->path.limits);

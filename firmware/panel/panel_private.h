@@ -34,14 +34,23 @@ struct panel_request {
     struct panel_client *client;
     enum panel_state state;
     uint32_t cycles;
-    bool has_owner;               /* the watchdog watches a panel */
-    struct panel_mailbox mailbox; /* as it will be */
-    struct panel_order order;     /* to the controller */
+    bool has_owner;                     /* the watchdog watches a panel */
+    uint32_t program_size, program_crc; /* of the program there is */
+    struct panel_mailbox mailbox;       /* as it will be */
+    struct panel_order order;           /* to the controller */
     enum panel_upload_command command;
     bool has_password, has_watchdog, has_chunk, has_command;
     uint32_t password;
     uint16_t check;
     int64_t watchdog_ms;
 };
+
+/* Part of what the request asks of the controller; then all of it, at once. */
+void takt_panel_add_order(struct panel_request *request, enum panel_id id, int64_t value);
+enum panel_refusal takt_panel_give_order(struct panel_request *request);
+
+/* A request with UPLOAD_COMMAND, or with a chunk. */
+enum panel_refusal takt_panel_command_upload(struct panel_request *request);
+enum panel_refusal takt_panel_take_chunk(const struct panel_request *request);
 
 #endif

@@ -22,7 +22,7 @@ static int64_t decode(const struct panel_register *row, const uint8_t *data, uns
     return row->form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
 }
 
-static void add_order(struct panel_request *r, enum panel_id id, int64_t value)
+void takt_panel_add_order(struct panel_request *r, enum panel_id id, int64_t value)
 {
     TAKT_ASSERT(r->order.count < PANEL_ORDER_MAX);
     TAKT_ASSERT(id < REGISTER_COUNT);
@@ -54,7 +54,7 @@ static void take_number(struct panel_request *r, enum panel_id id, int64_t value
         r->has_command = true;
         r->command = (enum panel_upload_command)value;
     } else {
-        add_order(r, id, value);
+        takt_panel_add_order(r, id, value);
     }
 }
 
@@ -223,7 +223,7 @@ static enum panel_refusal refusal_of(enum panel_verdict verdict)
     return PANEL_REFUSAL_BUSY;
 }
 
-static enum panel_refusal give_order(struct panel_request *r)
+enum panel_refusal takt_panel_give_order(struct panel_request *r)
 {
     const struct panel_port *port = &r->client->panel->config.port;
 
@@ -238,139 +238,6 @@ static void remember_owner(const struct panel_request *r)
     }
 }
 
-/* The controller alone knows whether a program may be taken now. */
-static enum panel_refusal hand_over(struct panel_request *r, uint32_t size, uint32_t crc)
-{
-    add_order(r, REGISTER_UPLOAD_SIZE, size);
-    add_order(r, REGISTER_UPLOAD_CRC, crc);
-    add_order(r, REGISTER_UPLOAD_COMMAND, r->command);
-    return give_order(r);
-}
-
-/* A program planned ahead: the controller makes room for it, if it can take one now. */
-static enum panel_refusal begin_plan(struct panel_request *r)
-{
-    struct panel *panel = r->client->panel;
-    const struct panel_store *store = &panel->config.plans;
-    enum panel_refusal refusal;
-
-    if (store->begin_stream == NULL || r->mailbox.upload_size == 0)
-        return PANEL_REFUSAL_VALUE;
-    takt_panel_upload_abandon(&panel->upload, takt_panel_get_store(panel));
-    panel->kind = PANEL_UPLOAD_PLAN;
-    add_order(r, REGISTER_UPLOAD_KIND, PANEL_UPLOAD_PLAN);
-    refusal = give_order(r);
-    if (refusal != PANEL_REFUSAL_NONE)
-        return refusal;
-    memset(panel->upload_text, 0, sizeof panel->upload_text);
-    return takt_panel_upload_stream(&panel->upload, store, r->mailbox.upload_size,
-                                    r->mailbox.upload_crc)
-               ? PANEL_REFUSAL_NONE
-               : PANEL_REFUSAL_VALUE;
-}
-
-/* Something is under way that may be reading the program. */
-static bool is_busy(enum panel_state state)
-{
-    return state >= PANEL_RUNNING && state <= PANEL_STOPPING;
-}
-
-/* The program before is gone as soon as the first byte of this one may come. */
-static enum panel_refusal begin_stream(struct panel_request *r)
-{
-    struct panel *panel = r->client->panel;
-    const struct panel_mailbox *mailbox = &r->mailbox;
-
-    if (mailbox->upload_kind == PANEL_UPLOAD_PLAN)
-        return begin_plan(r);
-    if (panel->config.store.begin_stream == NULL || mailbox->upload_size == 0)
-        return PANEL_REFUSAL_VALUE;
-    if (is_busy(r->state))
-        return PANEL_REFUSAL_STATE;
-    takt_panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
-    if (!takt_panel_upload_stream(&panel->upload, &panel->config.store, mailbox->upload_size,
-                                  mailbox->upload_crc))
-        return PANEL_REFUSAL_STATE;
-    return hand_over(r, mailbox->upload_size, mailbox->upload_crc);
-}
-
-/*
- * Made durable first, then handed to the controller, which alone knows whether it may be taken now,
- * then put in its place. Whatever fails, there is one whole program.
- */
-static enum panel_refusal commit(struct panel_request *r)
-{
-    struct panel *panel = r->client->panel;
-    const struct panel_store *store = &panel->config.store;
-    enum panel_refusal refusal;
-
-    if (panel->upload.state != PANEL_UPLOAD_WHOLE || panel->upload.is_stream)
-        return PANEL_REFUSAL_STATE;
-    if (!takt_panel_upload_is_right(&panel->upload))
-        return PANEL_REFUSAL_VALUE;
-    if (!store->prepare(store->context))
-        return PANEL_REFUSAL_BUSY;
-    refusal = hand_over(r, panel->upload.size, panel->upload.crc);
-    if (refusal != PANEL_REFUSAL_NONE)
-        return refusal;
-    takt_panel_upload_abandon(&panel->upload, store);
-    return store->place(store->context) ? PANEL_REFUSAL_NONE : PANEL_REFUSAL_BUSY;
-}
-
-static enum panel_refusal begin(const struct panel_request *r)
-{
-    struct panel *panel = r->client->panel;
-    const struct panel_mailbox *mailbox = &r->mailbox;
-
-    if (mailbox->upload_kind == PANEL_UPLOAD_PLAN)
-        return PANEL_REFUSAL_VALUE;
-    takt_panel_turn_upload(panel, mailbox->upload_kind);
-    if (panel->kind == PANEL_UPLOAD_SETTINGS)
-        return takt_panel_begin_settings(panel, mailbox);
-    return mailbox->upload_size > 0 &&
-                   takt_panel_upload_begin(&panel->upload, &panel->config.store,
-                                           mailbox->upload_size, mailbox->upload_crc)
-               ? PANEL_REFUSAL_NONE
-               : PANEL_REFUSAL_VALUE;
-}
-
-static enum panel_refusal command_upload(struct panel_request *r)
-{
-    struct panel *panel = r->client->panel;
-
-    switch (r->command) {
-    case PANEL_UPLOAD_BEGIN:
-        return begin(r);
-    case PANEL_UPLOAD_COMMIT:
-        return panel->kind == PANEL_UPLOAD_SETTINGS ? takt_panel_commit_settings(panel) : commit(r);
-    case PANEL_UPLOAD_STREAM:
-        return begin_stream(r);
-    case PANEL_UPLOAD_ABANDON:
-        takt_panel_upload_abandon(&panel->upload, takt_panel_get_store(panel));
-        break;
-    }
-    return PANEL_REFUSAL_NONE;
-}
-
-static enum panel_refusal take_chunk(const struct panel_request *r)
-{
-    struct panel *panel = r->client->panel;
-
-    if (panel->upload.state == PANEL_UPLOAD_NONE)
-        return PANEL_REFUSAL_STATE;
-    if (r->mailbox.chunk_offset <= panel->upload.received &&
-        r->mailbox.chunk_length >
-            panel->upload.received - r->mailbox.chunk_offset +
-                takt_panel_upload_room(&panel->upload, takt_panel_get_store(panel)) &&
-        r->mailbox.chunk_length <= panel->upload.size - r->mailbox.chunk_offset)
-        return PANEL_REFUSAL_BUSY;
-    if (takt_panel_upload_take(&panel->upload, takt_panel_get_store(panel), r->mailbox.chunk_offset,
-                               r->mailbox.chunk, r->mailbox.chunk_length, r->check))
-        return PANEL_REFUSAL_NONE;
-    return panel->kind == PANEL_UPLOAD_PLAN ? takt_panel_tell_why(panel, PANEL_REFUSAL_VALUE)
-                                            : PANEL_REFUSAL_VALUE;
-}
-
 /*
  * The table keeps chunk, upload command and orders so far apart that a request has one of them at
  * most.
@@ -380,11 +247,11 @@ static enum panel_refusal carry_out(struct panel_request *r)
     enum panel_refusal refusal = PANEL_REFUSAL_NONE;
 
     if (r->has_chunk)
-        refusal = take_chunk(r);
+        refusal = takt_panel_take_chunk(r);
     else if (r->has_command)
-        refusal = command_upload(r);
+        refusal = takt_panel_command_upload(r);
     else if (r->order.count > 0)
-        refusal = give_order(r);
+        refusal = takt_panel_give_order(r);
     if (refusal != PANEL_REFUSAL_NONE)
         return refusal;
     r->client->panel->mailbox = r->mailbox;
@@ -409,6 +276,8 @@ static __attribute__((noinline)) void look_at_state(struct panel_request *r)
     r->state = (enum panel_state)snapshot.value[REGISTER_STATE];
     r->cycles = snapshot.value[REGISTER_CYCLES];
     r->has_owner = snapshot.value[REGISTER_WATCHDOG] != 0;
+    r->program_size = snapshot.value[REGISTER_PROGRAM_SIZE];
+    r->program_crc = snapshot.value[REGISTER_PROGRAM_CRC];
 }
 
 /* All that it asks for is known. */

@@ -22,7 +22,7 @@ struct panel_store {
     bool (*prepare)(void *context);
     /*
      * The controller has taken the program: puts it in the place of the one before, at once or not
-     * at all. False: the new program runs, but is not kept over power-off.
+     * at all. False: cannot, and the controller takes the program before again.
      */
     bool (*place)(void *context);
     /*

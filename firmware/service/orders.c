@@ -128,7 +128,7 @@ static enum panel_verdict check_holding(const struct service *s, enum panel_id i
         is_between(id, REGISTER_TOOL_WEAR_LENGTH, REGISTER_TOOL_WEAR_TIME))
         return selected_tool(s) != NULL ? PANEL_DONE : PANEL_WRONG_VALUE;
     if (id == REGISTER_UPLOAD_COMMAND)
-        return verdict_on(s->job == SERVICE_NOTHING);
+        return verdict_on(takt_service_get_state(s) == PANEL_IDLE);
     if (id == REGISTER_UPLOAD_KIND)
         return check_plan(s);
     return PANEL_DONE;
@@ -345,11 +345,12 @@ static void set_rise(struct service *s, unsigned axis, int64_t value)
                              (double)value * UNITS_PER_COUNT);
 }
 
-/* A plan of the program before does not fit any more. */
+/* A plan of the program before does not fit any more, and its lines are others. */
 static void adopt_program(struct service *s)
 {
     takt_service_forget_plan(s);
     s->cut_line = 0;
+    s->settings.start_line = 0;
     s->config.programs.adopt(s->config.programs.context);
 }
 

@@ -124,9 +124,7 @@ static const char *begin_upload(struct page_client *client, const cJSON *upload)
 
     client->upload_at = 0;
     panel_host_lock(client->panel);
-    refused = write_number(client, REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_ABANDON);
-    if (refused == NULL)
-        refused = write_number(client, REGISTER_UPLOAD_KIND, PANEL_UPLOAD_PROGRAM);
+    refused = write_number(client, REGISTER_UPLOAD_KIND, PANEL_UPLOAD_PROGRAM);
     if (refused == NULL)
         refused = write_number(client, REGISTER_UPLOAD_SIZE, number_of(upload, 0));
     if (refused == NULL)

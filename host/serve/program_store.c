@@ -2,6 +2,7 @@
 
 #include "serve/program_store.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,26 +11,38 @@
 
 #define FILE_MODE 0644
 
+static void forget_file(struct program_store *store)
+{
+    if (store->is_aside)
+        (void)unlink(store->aside);
+    store->is_aside = false;
+}
+
+/* An upload that power has cut short is nobody's. */
+static void name_aside(struct program_store *store)
+{
+    (void)snprintf(store->aside, sizeof store->aside, "%s.takt-part", store->path);
+    (void)unlink(store->aside);
+}
+
 bool program_store_open(struct program_store *store, const char *path)
 {
     memset(store, 0, sizeof *store);
+    store->program = &store->text[0];
+    store->staged = store->brought = &store->text[1];
+    if (path != NULL && strlen(path) >= PROGRAM_STORE_PATH_MAX)
+        return false;
     store->path = path;
-    return path == NULL || strlen(path) < PROGRAM_STORE_PATH_MAX;
-}
-
-static void forget_file(struct program_store *store)
-{
-    if (store->aside[0] != '\0')
-        (void)unlink(store->aside);
-    store->aside[0] = '\0';
+    if (path != NULL)
+        name_aside(store);
+    return true;
 }
 
 void program_store_close(struct program_store *store)
 {
     forget_file(store);
-    free(store->program);
-    free(store->staged);
-    store->stream = NULL;
+    free(store->text[0].bytes);
+    free(store->text[1].bytes);
     memset(store, 0, sizeof *store);
 }
 
@@ -40,79 +53,66 @@ bool program_store_set(struct program_store *store, const char *bytes, size_t si
     if (copy == NULL)
         return false;
     memcpy(copy, bytes, size);
-    free(store->program);
-    store->program = copy;
-    store->size = size;
+    free(store->program->bytes);
+    store->program->bytes = copy;
+    store->program->size = size;
     return true;
 }
 
-/* A stream that has not come to its end never will: its place is another's. */
-static void end_stream_before(struct program_store *store)
+static bool is_coming(const struct stored_text *text)
 {
-    unsigned coming = PROGRAM_STREAM_COMING;
-
-    (void)atomic_compare_exchange_strong(&store->coming, &coming, PROGRAM_STREAM_WRONG);
-    if (store->stream == store->staged)
-        store->stream = NULL;
+    return atomic_load(&text->coming) == PROGRAM_STREAM_COMING;
 }
 
-static bool begin(void *context, uint32_t size)
+static bool begin_any(struct program_store *store, uint32_t size, enum program_stream coming)
 {
-    struct program_store *store = context;
+    struct stored_text *text = store->staged;
     char *room = malloc(size);
 
     if (room == NULL)
         return false;
-    end_stream_before(store);
+    /* A stream that has not come to its end never will: another upload takes its place. */
+    if (is_coming(store->brought))
+        atomic_store(&store->brought->coming, PROGRAM_STREAM_WRONG);
     forget_file(store);
-    free(store->staged);
-    store->staged = room;
-    store->staged_size = size;
+    free(text->bytes);
+    text->bytes = room;
+    text->size = size;
+    atomic_store(&text->has_come, 0);
+    atomic_store(&text->coming, coming);
+    store->brought = text;
     return true;
+}
+
+static bool begin(void *context, uint32_t size)
+{
+    return begin_any(context, size, PROGRAM_STREAM_NONE);
 }
 
 static bool begin_stream(void *context, uint32_t size)
 {
-    struct program_store *store = context;
-
-    if (!begin(store, size))
-        return false;
-    store->stream = store->staged;
-    store->stream_size = size;
-    atomic_store(&store->has_come, 0);
-    atomic_store(&store->coming, PROGRAM_STREAM_COMING);
-    return true;
+    return begin_any(context, size, PROGRAM_STREAM_COMING);
 }
 
 /* Where the last line that these bytes end ends; before them, if they end none. */
-static unsigned end_of_lines(const struct program_store *store, uint32_t offset, size_t length)
+static unsigned end_of_lines(const struct stored_text *text, uint32_t offset, size_t length)
 {
     for (size_t at = offset + length; at > offset; at--) {
-        if (store->stream[at - 1] == '\n')
+        if (text->bytes[at - 1] == '\n')
             return (unsigned)at;
     }
-    return atomic_load(&store->has_come);
-}
-
-static bool take_stream(struct program_store *store, uint32_t offset, const uint8_t *data,
-                        size_t length)
-{
-    if (offset > store->stream_size || length > store->stream_size - offset)
-        return false;
-    memcpy(store->stream + offset, data, length);
-    atomic_store(&store->has_come, end_of_lines(store, offset, length));
-    return true;
+    return atomic_load(&text->has_come);
 }
 
 static bool take(void *context, uint32_t offset, const uint8_t *data, size_t length)
 {
-    struct program_store *store = context;
+    struct stored_text *text = ((struct program_store *)context)->brought;
 
-    if (atomic_load(&store->coming) == PROGRAM_STREAM_COMING)
-        return take_stream(store, offset, data, length);
-    if (offset > store->staged_size || length > store->staged_size - offset)
+    if (offset > text->size || length > text->size - offset)
         return false;
-    memcpy(store->staged + offset, data, length);
+    memcpy(text->bytes + offset, data, length);
+    if (is_coming(text))
+        atomic_store(&text->has_come, end_of_lines(text, offset, length));
     return true;
 }
 
@@ -130,7 +130,7 @@ static bool write_all(int file, const char *bytes, size_t size)
 }
 
 /* Beside its place, and on the disk. */
-static bool write_aside(struct program_store *store, const char *bytes, size_t size)
+static bool write_aside(struct program_store *store, const struct stored_text *text)
 {
     bool good;
     int file;
@@ -138,13 +138,12 @@ static bool write_aside(struct program_store *store, const char *bytes, size_t s
     if (store->path == NULL)
         return true;
     forget_file(store);
-    (void)snprintf(store->aside, sizeof store->aside, "%s.part-XXXXXX", store->path);
-    file = mkstemp(store->aside);
-    if (file < 0) {
-        store->aside[0] = '\0';
+    file = open(store->aside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    store->is_aside = file >= 0;
+    if (file < 0)
         return false;
-    }
-    good = write_all(file, bytes, size) && fchmod(file, FILE_MODE) == 0 && fsync(file) == 0;
+    good = write_all(file, text->bytes, text->size) && fchmod(file, FILE_MODE) == 0 &&
+           fsync(file) == 0;
     good = close(file) == 0 && good;
     if (!good)
         forget_file(store);
@@ -155,7 +154,7 @@ static bool prepare(void *context)
 {
     struct program_store *store = context;
 
-    return write_aside(store, store->staged, store->staged_size);
+    return write_aside(store, store->staged);
 }
 
 static bool place(void *context)
@@ -164,7 +163,7 @@ static bool place(void *context)
     bool good = store->path == NULL || rename(store->aside, store->path) == 0;
 
     if (good)
-        store->aside[0] = '\0';
+        store->is_aside = false;
     forget_file(store);
     return good;
 }
@@ -173,12 +172,13 @@ static bool place(void *context)
 static void end_stream(void *context, bool right)
 {
     struct program_store *store = context;
+    struct stored_text *text = store->brought;
 
     if (right) {
-        atomic_store(&store->has_come, (unsigned)store->stream_size);
-        (void)(write_aside(store, store->stream, store->stream_size) && place(store));
+        atomic_store(&text->has_come, (unsigned)text->size);
+        (void)(write_aside(store, text) && place(store));
     }
-    atomic_store(&store->coming, right ? PROGRAM_STREAM_WHOLE : PROGRAM_STREAM_WRONG);
+    atomic_store(&text->coming, right ? PROGRAM_STREAM_WHOLE : PROGRAM_STREAM_WRONG);
 }
 
 struct panel_store program_store_get_staging(struct program_store *store)
@@ -192,58 +192,59 @@ struct panel_store program_store_get_staging(struct program_store *store)
                                 .context = store};
 }
 
-static bool is_stream(const struct program_store *store)
+static bool is_stream(const struct stored_text *text)
 {
-    return store->program != NULL && store->program == store->stream;
+    return atomic_load(&text->coming) != PROGRAM_STREAM_NONE;
 }
 
 bool program_store_get(const struct program_store *store, const char **text, size_t *size)
 {
-    *text = store->program;
-    *size = is_stream(store) ? atomic_load(&store->has_come) : store->size;
-    return store->program != NULL;
+    const struct stored_text *program = store->program;
+
+    *text = program->bytes;
+    *size = is_stream(program) ? atomic_load(&program->has_come) : program->size;
+    return program->bytes != NULL;
 }
 
 /* As far as it has come. How it ends is looked at first: then all that came before is there. */
 static long read_stream(void *context, char *buffer, size_t size)
 {
-    struct program_store *store = context;
-    const unsigned coming = atomic_load(&store->coming);
-    const size_t left = atomic_load(&store->has_come) - store->text.position;
+    struct stored_text *text = context;
+    const unsigned coming = atomic_load(&text->coming);
+    const size_t has_come = atomic_load(&text->has_come);
+    const size_t position = text->source.position;
+    const size_t left = has_come > position ? has_come - position : 0;
     const size_t count = left < size ? left : size;
 
     if (coming == PROGRAM_STREAM_WRONG)
         return SOURCE_ERROR;
     if (count == 0)
         return coming == PROGRAM_STREAM_WHOLE ? SOURCE_END : SOURCE_LATER;
-    memcpy(buffer, store->program + store->text.position, count);
-    store->text.position += count;
+    memcpy(buffer, text->bytes + position, count);
+    text->source.position += count;
     return (long)count;
 }
 
 /* What has been read may be read again. */
 static bool seek_stream(void *context, uint64_t offset)
 {
-    struct program_store *store = context;
+    struct stored_text *text = context;
 
-    if (offset > atomic_load(&store->has_come))
+    if (offset > atomic_load(&text->has_come))
         return false;
-    store->text.position = (size_t)offset;
+    text->source.position = (size_t)offset;
     return true;
 }
 
 bool program_store_read(void *context, struct source *source)
 {
-    struct program_store *store = context;
+    struct stored_text *text = ((struct program_store *)context)->program;
 
-    if (store->program == NULL)
+    if (text->bytes == NULL)
         return false;
-    if (is_stream(store)) {
-        store->text.position = 0;
-        *source = (struct source){.read = read_stream, .seek = seek_stream, .context = store};
-        return true;
-    }
-    takt_source_open_text(source, &store->text, store->program, store->size);
+    takt_source_open_text(source, &text->source, text->bytes, text->size);
+    if (is_stream(text))
+        *source = (struct source){.read = read_stream, .seek = seek_stream, .context = text};
     return true;
 }
 
@@ -251,11 +252,8 @@ bool program_store_read(void *context, struct source *source)
 void program_store_adopt(void *context)
 {
     struct program_store *store = context;
-    char *before = store->program;
-    const size_t before_size = store->size;
+    struct stored_text *before = store->program;
 
     store->program = store->staged;
-    store->size = store->staged_size;
     store->staged = before;
-    store->staged_size = before_size;
 }

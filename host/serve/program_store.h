@@ -26,21 +26,27 @@ enum program_stream {
     PROGRAM_STREAM_WRONG /* given up, or not what was announced */
 };
 
-struct program_store {
-    char *program; /* what runs; owned, NULL: none */
+struct stored_text {
+    char *bytes; /* owned; NULL: none */
     size_t size;
-    char *staged; /* what is coming, or the program before the last */
-    size_t staged_size;
-    const char *path; /* NULL: in memory alone */
-    char aside[PROGRAM_STORE_PATH_MAX + 16];
-    struct source_text text; /* of the program being read */
-    char *stream; /* the text being streamed: that which is staged, or runs; NULL: none is */
-    size_t stream_size;
-    atomic_uint has_come; /* whole lines of it, bytes; all, at its end */
-    atomic_uint coming;   /* enum program_stream */
+    atomic_uint coming;        /* enum program_stream */
+    atomic_uint has_come;      /* of a stream: whole lines of it, bytes; all, at its end */
+    struct source_text source; /* where it is being read */
 };
 
-/* path stays the caller's. False: it is too long. */
+struct program_store {
+    struct stored_text text[2];
+    struct stored_text *program; /* what runs */
+    struct stored_text *staged;  /* what is coming, or the program before the last */
+    struct stored_text *brought; /* by the last upload: staged, or once it is adopted, program */
+    const char *path;            /* NULL: in memory alone */
+    char aside[PROGRAM_STORE_PATH_MAX + 16];
+    bool is_aside; /* that file is there */
+};
+
+/*
+ * path stays the caller's. What a power cut has left beside it is removed. False: it is too long.
+ */
 bool program_store_open(struct program_store *store, const char *path);
 void program_store_close(struct program_store *store);
 

@@ -71,14 +71,16 @@ static void open_service(struct serving *s)
         .lines = serving_console_get_lines(s),
         .exact_path = s->session.options->exact_path,
     };
+    const char *text;
+    size_t size;
 
     takt_plan_queue_init(&s->plan, &s->service);
     takt_service_init(&s->service, &config);
     drive_network_watch_drives(&s->network, takt_controller_get_drives(&s->service.controller));
     message_controller_warning(&s->service.controller);
-    if (s->store.program != NULL)
-        takt_service_set_program(&s->service, (uint32_t)s->store.size,
-                                 takt_crc32_add(CRC32_START, s->store.program, s->store.size));
+    if (program_store_get(&s->store, &text, &size))
+        takt_service_set_program(&s->service, (uint32_t)size,
+                                 takt_crc32_add(CRC32_START, text, size));
     takt_service_set_start_line(&s->service, s->session.options->from_line);
     serving_state_restore(&s->state, &s->service);
     s->has_service = true;

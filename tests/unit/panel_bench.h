@@ -18,7 +18,8 @@ static unsigned orders, alive;
 static enum panel_verdict verdict;
 static uint8_t stored[1000];
 static uint32_t room;
-static unsigned prepared, placed;
+static unsigned prepared, placed, streams, ended;
+static bool no_place; /* what is prepared cannot be put in its place */
 
 static struct panel panel;
 static struct panel_client one, other;
@@ -73,7 +74,20 @@ static inline bool store_place(void *context)
 {
     (void)context;
     placed++;
-    return true;
+    return !no_place;
+}
+
+static inline bool store_begin_stream(void *context, uint32_t size)
+{
+    streams++;
+    return takt_store_begin(context, size);
+}
+
+static inline void store_end_stream(void *context, bool right)
+{
+    (void)context;
+    (void)right;
+    ended++;
 }
 
 static inline void start_with(uint32_t password)
@@ -83,7 +97,9 @@ static inline void start_with(uint32_t password)
         .store = {.begin = takt_store_begin,
                   .write = takt_store_write,
                   .prepare = store_prepare,
-                  .place = store_place},
+                  .place = store_place,
+                  .begin_stream = store_begin_stream,
+                  .end_stream = store_end_stream},
         .password = password,
     };
 
@@ -96,7 +112,8 @@ void setUp(void)
 {
     memset(&shown, 0, sizeof shown);
     memset(&ordered, 0, sizeof ordered);
-    orders = alive = prepared = placed = 0;
+    orders = alive = prepared = placed = streams = ended = 0;
+    no_place = false;
     verdict = PANEL_DONE;
     shown.value[REGISTER_STATE] = PANEL_IDLE;
     start_with(0);
@@ -152,7 +169,8 @@ static inline enum modbus_exception write_row(struct panel_client *client, enum 
     return map.write(map.context, row->table, row->address, row->words, bytes);
 }
 
-static inline enum modbus_exception begin(uint32_t size, uint32_t crc)
+static inline enum modbus_exception begin_by(enum panel_upload_command command, uint32_t size,
+                                             uint32_t crc)
 {
     uint8_t words[10];
 
@@ -160,8 +178,13 @@ static inline enum modbus_exception begin(uint32_t size, uint32_t crc)
     modbus_write16(words + 2, (uint16_t)size);
     modbus_write16(words + 4, (uint16_t)(crc >> 16));
     modbus_write16(words + 6, (uint16_t)crc);
-    modbus_write16(words + 8, PANEL_UPLOAD_BEGIN);
+    modbus_write16(words + 8, (uint16_t)command);
     return write_words(&one, takt_panel_registers[REGISTER_UPLOAD_SIZE].address, 5, words);
+}
+
+static inline enum modbus_exception begin(uint32_t size, uint32_t crc)
+{
+    return begin_by(PANEL_UPLOAD_BEGIN, size, crc);
 }
 
 #endif

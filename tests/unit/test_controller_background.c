@@ -4,6 +4,7 @@
  */
 #include "bus/bus.h"
 #include "controller/controller.h"
+#include "controller/restart.h"
 #include "drives/virtual_drives.h"
 
 #include "unity.h"
@@ -25,7 +26,7 @@ static struct parameters parameters;
 static struct source_text text;
 static uint64_t now_ns;
 
-static void start(const char *program)
+static void start_from(const struct source *source)
 {
     struct virtual_drives_config virtual;
     struct machine machine;
@@ -39,9 +40,17 @@ static void start(const char *program)
     config.can = can_single(bus_attach(&bus, NULL));
     virtual_drives_init(&drives, &bus, &virtual);
     takt_parameters_clear(&parameters);
-    takt_source_open_text(&config.source, &text, program, strlen(program));
+    config.source = *source;
     takt_controller_init(&controller, &config);
     now_ns = 0;
+}
+
+static void start(const char *program)
+{
+    struct source source;
+
+    takt_source_open_text(&source, &text, program, strlen(program));
+    start_from(&source);
 }
 
 static void cycle(void)
@@ -182,6 +191,41 @@ static void test_a_spindle_that_does_not_reach_its_speed_is_a_fault(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, controller.record.set.at[AXIS_X]);
 }
 
+/* A text that comes while it is read: so much of it has come. */
+static const char comes[] = "G21 F600\nG1 X20\nG10 L2 P1 X5\n";
+static size_t come, taken;
+
+static long read_what_has_come(void *context, char *buffer, size_t size)
+{
+    const size_t count = come - taken < size ? come - taken : size;
+
+    (void)context;
+    memcpy(buffer, comes + taken, count);
+    taken += count;
+    return count > 0 ? (long)count : SOURCE_LATER;
+}
+
+static void test_nothing_of_a_program_that_was_stopped_at_once_is_read_any_more(void)
+{
+    const struct source source = {.read = read_what_has_come};
+
+    come = sizeof "G21 F600\nG1 X20\n" - 1;
+    taken = 0;
+    start_from(&source);
+    for (unsigned i = 0; i < CYCLES_MAX && controller.record.set.at[AXIS_X] < 1.0; i++) {
+        takt_controller_background(&controller);
+        cycle();
+    }
+    takt_controller_stop_at_once(&controller, TAKT_ERROR_EMERGENCY_STOP);
+    come = sizeof comes - 1;
+    for (unsigned i = 0; i < 100; i++) {
+        takt_controller_background(&controller);
+        cycle();
+    }
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, takt_controller_get_state(&controller));
+    TEST_ASSERT_EQUAL_UINT(sizeof "G21 F600\nG1 X20\n" - 1, taken);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -194,5 +238,6 @@ int main(void)
     RUN_TEST(test_probing_away_from_nothing_ends_where_it_begins);
     RUN_TEST(test_an_involute_is_run_to_its_end);
     RUN_TEST(test_a_spindle_that_does_not_reach_its_speed_is_a_fault);
+    RUN_TEST(test_nothing_of_a_program_that_was_stopped_at_once_is_read_any_more);
     return UNITY_END();
 }

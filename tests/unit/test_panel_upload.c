@@ -117,6 +117,72 @@ static void test_a_program_for_which_there_is_no_room_is_refused(void)
     TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, begin(0, 0));
 }
 
+static void test_a_stream_begins_in_idle_alone(void)
+{
+    for (unsigned state = 0; state < PANEL_STATES; state++) {
+        if (state == PANEL_IDLE)
+            continue;
+        shown.value[REGISTER_STATE] = state;
+        TEST_ASSERT_EQUAL_INT(MODBUS_STATE, begin_by(PANEL_UPLOAD_STREAM, 20, 1));
+    }
+    TEST_ASSERT_EQUAL_UINT(0, streams + orders);
+    shown.value[REGISTER_STATE] = PANEL_IDLE;
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin_by(PANEL_UPLOAD_STREAM, 20, 1));
+}
+
+static void test_a_stream_that_the_controller_does_not_take_is_not_open(void)
+{
+    verdict = PANEL_TRY_AGAIN;
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, begin_by(PANEL_UPLOAD_STREAM, 20, 1));
+    TEST_ASSERT_EQUAL_INT64(PANEL_UPLOAD_NONE, value_of(&one, REGISTER_UPLOAD_STATE));
+    TEST_ASSERT_EQUAL_UINT(1, ended);
+}
+
+static void test_no_other_upload_ends_a_stream_that_runs(void)
+{
+    (void)begin_by(PANEL_UPLOAD_STREAM, 20, 1);
+    for (unsigned state = PANEL_RUNNING; state <= PANEL_STOPPING; state++) {
+        shown.value[REGISTER_STATE] = state;
+        TEST_ASSERT_EQUAL_INT(MODBUS_STATE, begin(30, 2));
+        for (int64_t kind = PANEL_UPLOAD_SETTINGS; kind <= PANEL_UPLOAD_PLAN; kind++) {
+            TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_UPLOAD_KIND, kind));
+            TEST_ASSERT_TRUE(begin(30, 2) != MODBUS_GOOD);
+            TEST_ASSERT_TRUE(begin_by(PANEL_UPLOAD_STREAM, 30, 2) != MODBUS_GOOD);
+        }
+        (void)write_row(&one, REGISTER_UPLOAD_KIND, PANEL_UPLOAD_PROGRAM);
+    }
+    TEST_ASSERT_EQUAL_UINT(0, ended);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(20, 1));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, send_good(0, "G21 G90\n"));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_UPLOAD_COMMAND, 3));
+    TEST_ASSERT_EQUAL_UINT(1, ended);
+}
+
+static void test_nothing_is_stored_while_a_program_cannot_be_taken(void)
+{
+    (void)begin(sizeof program - 1, program_crc());
+    (void)send_good(0, program);
+    shown.value[REGISTER_STATE] = PANEL_RUNNING;
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_UINT(0, prepared + orders);
+}
+
+static void test_a_program_that_cannot_be_kept_leaves_the_one_before(void)
+{
+    shown.value[REGISTER_PROGRAM_SIZE] = 77;
+    shown.value[REGISTER_PROGRAM_CRC] = 88;
+    (void)begin(sizeof program - 1, program_crc());
+    (void)send_good(0, program);
+    no_place = true;
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_UINT(2, orders);
+    TEST_ASSERT_EQUAL_UINT(3, ordered.count);
+    TEST_ASSERT_EQUAL_INT64(77, ordered.item[0].value);
+    TEST_ASSERT_EQUAL_INT64(88, ordered.item[1].value);
+    no_place = false;
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -128,5 +194,10 @@ int main(void)
     RUN_TEST(test_bytes_that_are_not_those_announced_are_no_program);
     RUN_TEST(test_a_commit_that_the_controller_refuses_keeps_the_upload);
     RUN_TEST(test_a_program_for_which_there_is_no_room_is_refused);
+    RUN_TEST(test_a_stream_begins_in_idle_alone);
+    RUN_TEST(test_a_stream_that_the_controller_does_not_take_is_not_open);
+    RUN_TEST(test_no_other_upload_ends_a_stream_that_runs);
+    RUN_TEST(test_nothing_is_stored_while_a_program_cannot_be_taken);
+    RUN_TEST(test_a_program_that_cannot_be_kept_leaves_the_one_before);
     return UNITY_END();
 }

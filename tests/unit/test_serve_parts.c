@@ -276,6 +276,61 @@ static void test_a_stream_that_is_given_up_cannot_be_read(void)
     program_store_close(&store);
 }
 
+static void test_a_stream_that_is_begun_leaves_the_program_that_is_read(void)
+{
+    static struct program_store store;
+    const struct panel_store staging = program_store_get_staging(&store);
+    char buffer[64];
+    struct source source;
+
+    TEST_ASSERT_TRUE(program_store_open(&store, NULL));
+    TEST_ASSERT_TRUE(staging.begin_stream(staging.context, 20));
+    program_store_adopt(&store);
+    TEST_ASSERT_TRUE(program_store_read(&store, &source));
+    TEST_ASSERT_TRUE(staging.write(staging.context, 0, (const uint8_t *)"G0 X1\nG0 X2\n", 12));
+    TEST_ASSERT_EQUAL_INT(12, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_TRUE(staging.begin_stream(staging.context, 4));
+    TEST_ASSERT_EQUAL_INT(SOURCE_ERROR, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_TRUE(program_store_read(&store, &source));
+    TEST_ASSERT_EQUAL_INT(SOURCE_ERROR, source.read(source.context, buffer, sizeof buffer));
+    program_store_adopt(&store);
+    TEST_ASSERT_TRUE(program_store_read(&store, &source));
+    TEST_ASSERT_TRUE(staging.write(staging.context, 0, (const uint8_t *)"M2\n", 3));
+    TEST_ASSERT_EQUAL_INT(3, source.read(source.context, buffer, sizeof buffer));
+    program_store_close(&store);
+}
+
+static void test_a_program_that_is_adopted_twice_is_the_one_before(void)
+{
+    static struct program_store store;
+    const char *text;
+    size_t size;
+
+    TEST_ASSERT_TRUE(program_store_open(&store, NULL));
+    TEST_ASSERT_TRUE(program_store_set(&store, "M2\n", 3));
+    bring(&store, "G0 X222\n");
+    program_store_adopt(&store);
+    program_store_adopt(&store);
+    TEST_ASSERT_TRUE(program_store_get(&store, &text, &size));
+    TEST_ASSERT_EQUAL_UINT(3, size);
+    TEST_ASSERT_EQUAL_MEMORY("M2\n", text, 3);
+    program_store_close(&store);
+}
+
+static void test_what_a_power_cut_has_left_beside_the_program_is_removed_at_start(void)
+{
+    static struct program_store store, next;
+    char text[32];
+
+    TEST_ASSERT_TRUE(program_store_open(&store, "cut.ngc"));
+    bring(&store, "G0 X1\n");
+    TEST_ASSERT_EQUAL_UINT(6, read_file(store.aside, text, sizeof text));
+    TEST_ASSERT_TRUE(program_store_open(&next, "cut.ngc"));
+    TEST_ASSERT_EQUAL_UINT(0, read_file(store.aside, text, sizeof text));
+    program_store_close(&next);
+    program_store_close(&store);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -290,5 +345,8 @@ int main(void)
     RUN_TEST(test_an_order_that_nobody_takes_is_given_up);
     RUN_TEST(test_a_program_that_is_streamed_is_read_as_far_as_it_has_come);
     RUN_TEST(test_a_stream_that_is_given_up_cannot_be_read);
+    RUN_TEST(test_a_stream_that_is_begun_leaves_the_program_that_is_read);
+    RUN_TEST(test_a_program_that_is_adopted_twice_is_the_one_before);
+    RUN_TEST(test_what_a_power_cut_has_left_beside_the_program_is_removed_at_start);
     return UNITY_END();
 }

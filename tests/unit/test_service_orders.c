@@ -1,5 +1,5 @@
 /*
- * firmware/service/service.h: programs, lines, jogs, homing, faults and settings, as a panel orders
+ * firmware/service/service.h: programs, lines, homing, faults and settings, as a panel orders
  * them.
  */
 #include "service_bench.h"
@@ -153,41 +153,20 @@ static void test_each_start_needs_its_mode(void)
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_HOME, 1));
 }
 
-static void test_a_jog_goes_its_distance_at_its_feed(void)
+static void test_a_program_is_taken_in_idle_alone(void)
 {
-    must(REGISTER_MODE, PANEL_MODE_JOG);
-    must(REGISTER_JOG_AXIS, AXIS_Y);
-    must(REGISTER_JOG_FEED, 1200);
-    must(REGISTER_JOG_DISTANCE, 12500);
-    must(REGISTER_JOG_MINUS, 1);
-    TEST_ASSERT_EQUAL_INT64(1, shown(REGISTER_JOG_MINUS));
-    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_JOG_PLUS, 1));
-    for (int i = 0; i < 300; i++)
-        cycle();
-    TEST_ASSERT_EQUAL_INT64(12000, shown(REGISTER_FEED));
-    wait_for(PANEL_IDLE);
-    TEST_ASSERT_EQUAL_INT64(-12500, shown(REGISTER_POSITION_Y));
+    must(REGISTER_EMERGENCY_STOP, 1);
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_UPLOAD_COMMAND, 2));
+    must(REGISTER_EMERGENCY_STOP, 0);
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_UPLOAD_COMMAND, 4));
 }
 
-static void test_a_jog_stays_within_the_travel(void)
+static void test_the_start_line_of_a_program_is_not_that_of_the_next(void)
 {
-    must(REGISTER_MODE, PANEL_MODE_JOG);
-    must(REGISTER_JOG_DISTANCE, 500001);
-    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_VALUE, order(REGISTER_JOG_PLUS, 1));
-    must(REGISTER_JOG_DISTANCE, 500000);
-    must(REGISTER_JOG_FEED, 60000);
-    must(REGISTER_JOG_PLUS, 1);
-    wait_for(PANEL_IDLE);
-    TEST_ASSERT_EQUAL_INT64(500000, shown(REGISTER_POSITION_X));
-}
-
-static void test_a_jog_without_end_is_for_a_panel_in_control(void)
-{
-    must(REGISTER_MODE, PANEL_MODE_JOG);
-    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_JOG_PLUS, 1));
-    must(REGISTER_WATCHDOG, 60000);
-    must(REGISTER_JOG_PLUS, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_JOGGING, takt_service_get_state(&service));
+    load("M2\n");
+    must(REGISTER_START_LINE, 3);
+    load("G21 F600\nG1 X1\nM2\n");
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_START_LINE));
 }
 
 static void test_homing_takes_all_axes_to_zero(void)
@@ -411,9 +390,6 @@ int main(void)
     RUN_TEST(test_jogs_and_homing_neither_use_nor_change_the_modes_of_lines);
     RUN_TEST(test_a_line_does_not_go_on_with_cutter_compensation);
     RUN_TEST(test_each_start_needs_its_mode);
-    RUN_TEST(test_a_jog_goes_its_distance_at_its_feed);
-    RUN_TEST(test_a_jog_stays_within_the_travel);
-    RUN_TEST(test_a_jog_without_end_is_for_a_panel_in_control);
     RUN_TEST(test_homing_takes_all_axes_to_zero);
     RUN_TEST(test_an_emergency_stop_ends_in_idle_where_the_drives_stand);
     RUN_TEST(test_a_refused_order_has_changed_nothing);
@@ -427,5 +403,7 @@ int main(void)
     RUN_TEST(test_the_spindle_override_scales_the_commanded_speed);
     RUN_TEST(test_homing_that_is_stopped_is_an_alarm);
     RUN_TEST(test_homing_finds_the_homes_of_the_drives_first);
+    RUN_TEST(test_a_program_is_taken_in_idle_alone);
+    RUN_TEST(test_the_start_line_of_a_program_is_not_that_of_the_next);
     return UNITY_END();
 }
