@@ -177,13 +177,19 @@ static enum panel_refusal check_password(const struct panel_request *r)
     return password == 0 || r->client->unlocked ? PANEL_REFUSAL_NONE : PANEL_REFUSAL_LOCKED;
 }
 
+/* Whoever may write nothing else yet may give the password. */
+static bool is_password_alone(const struct panel_request *r)
+{
+    return r->has_password && r->order.count == 0 && !r->has_chunk && !r->has_command;
+}
+
 static enum panel_refusal check_rights(const struct panel_request *r)
 {
     const struct panel *panel = r->client->panel;
 
     if (takt_panel_is_for_everybody(&r->order))
         return PANEL_REFUSAL_NONE;
-    if (r->has_owner && panel->owner != r->client && !r->has_password)
+    if (r->has_owner && panel->owner != r->client && !is_password_alone(r))
         return PANEL_REFUSAL_CONTROL;
     return check_password(r);
 }

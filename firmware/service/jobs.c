@@ -31,6 +31,7 @@ static void begin_job(struct service *s, enum service_job job)
     s->has_stood = false;
     s->has_starved = false;
     s->held_block = 0;
+    s->jog_is_endless = false;
     s->streams = false;
     s->settings.spindle_stop = false;
     s->digest = FNV_START;
@@ -250,6 +251,7 @@ void takt_service_start_jog(struct service *s, bool negative)
     add_word(s, 'F', (double)s->settings.jog_feed_mm_min);
     s->jog_is_negative = negative;
     start_text(s, SERVICE_JOG);
+    s->jog_is_endless = s->settings.jog_distance == 0;
 }
 
 /* By a line, so that it is weighed as that of a program is. */

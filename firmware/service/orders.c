@@ -193,8 +193,7 @@ static void jog(struct service *s, bool negative, bool on)
 {
     if (on && s->job == SERVICE_NOTHING)
         takt_service_start_jog(s, negative);
-    else if (!on && s->job == SERVICE_JOG && s->jog_is_negative == negative &&
-             s->settings.jog_distance == 0)
+    else if (!on && s->job == SERVICE_JOG && s->jog_is_negative == negative && s->jog_is_endless)
         takt_service_give_up(s);
 }
 
@@ -421,6 +420,13 @@ static enum panel_verdict check_order(struct service *s, const struct panel_orde
     return verdict;
 }
 
+/* Nobody is known to be there any more who would end it. */
+static void watch_jog(struct service *s)
+{
+    if (s->job == SERVICE_JOG && s->jog_is_endless && s->settings.watchdog_ms == 0)
+        takt_service_give_up(s);
+}
+
 enum panel_verdict takt_service_order(struct service *s, const struct panel_order *order)
 {
     const struct service_settings before = s->settings;
@@ -441,5 +447,6 @@ enum panel_verdict takt_service_order(struct service *s, const struct panel_orde
     }
     if (s->settings.watchdog_ms != before.watchdog_ms)
         takt_service_alive(s);
+    watch_jog(s);
     return PANEL_DONE;
 }

@@ -64,6 +64,7 @@ struct service {
     bool has_starved;      /* the program that runs has had to wait for its text */
     bool emergency;        /* the button is in */
     bool jog_is_negative;  /* of a jog */
+    bool jog_is_endless;   /* it ends when its coil is cleared */
     unsigned rest_cycles;  /* cycles in which no axis has been moved */
     bool tells_speed;      /* the spindle's drive has once said that it is at speed */
     bool has_stood;        /* the spindle has been stopped or lost in this hold */

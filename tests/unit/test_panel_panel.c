@@ -236,6 +236,18 @@ static void test_whoever_claims_control_is_the_only_one_to_write(void)
     TEST_ASSERT_EQUAL_INT64(PANEL_CONTROL_FREE, value_of(&one, REGISTER_CONTROL));
 }
 
+/* WATCHDOG and PASSWORD are neighbours. */
+static void test_a_password_does_not_take_control_from_another(void)
+{
+    uint8_t words[6] = {0x0B, 0xB8, 0, 0, 0, 0};
+
+    (void)write_row(&one, REGISTER_WATCHDOG, 500);
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_words(&other, 36, 3, words));
+    TEST_ASSERT_EQUAL_INT64(PANEL_CONTROL_MINE, value_of(&one, REGISTER_CONTROL));
+    TEST_ASSERT_EQUAL_INT64(500, shown.value[REGISTER_WATCHDOG]);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&other, REGISTER_PASSWORD, 0));
+}
+
 static void test_each_request_of_the_panel_in_control_is_a_sign_of_life(void)
 {
     (void)value_of(&one, REGISTER_STATE);
@@ -289,6 +301,7 @@ int main(void)
     RUN_TEST(test_the_password_unlocks_one_client);
     RUN_TEST(test_anybody_may_hold_the_feed_and_stop);
     RUN_TEST(test_whoever_claims_control_is_the_only_one_to_write);
+    RUN_TEST(test_a_password_does_not_take_control_from_another);
     RUN_TEST(test_each_request_of_the_panel_in_control_is_a_sign_of_life);
     RUN_TEST(test_control_of_a_client_that_has_left_stays_until_the_watchdog_bites);
     RUN_TEST(test_a_line_goes_to_the_controller_with_its_start);
