@@ -124,7 +124,8 @@ enum panel_form {
 #define PANEL_WHEN_IDLE   PANEL_IN(PANEL_IDLE)
 #define PANEL_WHEN_HELD   PANEL_IN(PANEL_HELD)
 #define PANEL_WHEN_WORK   (PANEL_WHEN_HELD | PANEL_IN(PANEL_RUNNING) | PANEL_IN(PANEL_MDI))
-#define PANEL_WHEN_JOG    (PANEL_IN(PANEL_IDLE) | PANEL_IN(PANEL_JOGGING) | PANEL_IN(PANEL_STOPPING))
+#define PANEL_WHEN_JOG    (PANEL_IN(PANEL_IDLE) | PANEL_IN(PANEL_JOGGING))
+#define PANEL_WHEN_OUT    (PANEL_ANY & ~PANEL_IN(PANEL_EMERGENCY)) /* the button is */
 #define PANEL_WHEN_MOTION (PANEL_WHEN_IDLE | PANEL_WHEN_HELD)
 
 #define PANEL_U16_MOST 65535
@@ -186,8 +187,8 @@ enum panel_form {
                "1: each motion of a program or a line ends in a hold, the last and the current one too, that if there is room to brake") \
     PANEL_COIL(ROW, OPTIONAL_STOP, 4, PANEL_ANY, "1: M1 stops as M0 does") \
     PANEL_COIL(ROW, BLOCK_DELETE, 5, PANEL_WHEN_IDLE, "1: lines that begin with / are skipped") \
-    PANEL_COIL(ROW, RESET, 6, PANEL_ANY, \
-        "1: gives up what runs, after coming to rest; acknowledges alarms; enables drives again. Reads 0") \
+    PANEL_COIL(ROW, RESET, 6, PANEL_WHEN_OUT, \
+        "1: gives up what runs, after coming to rest; acknowledges alarms; enables drives again. Not while drives brake. Reads 0") \
     PANEL_COIL(ROW, EMERGENCY_STOP, 7, PANEL_ANY, \
         "1: quick stop of all drives, spindle off; anyone may. 0: releases it, then RESET continues") \
     PANEL_COIL(ROW, ACKNOWLEDGE, 8, PANEL_ANY, \
@@ -204,8 +205,8 @@ enum panel_form {
     PANEL_COIL(ROW, CORRECTION_VOLUME, 19, PANEL_ANY, "1: likewise, volume table") \
     PANEL_COIL(ROW, CORRECTION_THERMAL, 20, PANEL_ANY, "1: likewise, thermal growth") \
     PANEL_COIL(ROW, CORRECTION_WEAR, 21, PANEL_ANY, "1: likewise, tool wear and length") \
-    PANEL_COIL(ROW, FLOOD, 22, PANEL_ANY, "1: flood coolant on, 0: off, until the program says otherwise") \
-    PANEL_COIL(ROW, MIST, 23, PANEL_ANY, "1: mist coolant likewise") \
+    PANEL_COIL(ROW, FLOOD, 22, PANEL_WHEN_OUT, "1: flood coolant on, 0: off, until the program says otherwise") \
+    PANEL_COIL(ROW, MIST, 23, PANEL_WHEN_OUT, "1: mist coolant likewise") \
     PANEL_COIL(ROW, SPINDLE_STOP, 24, PANEL_WHEN_WORK, \
         "1: with or after FEED_HOLD: the spindle stands from when the axes rest; 0 and at speed again, before RESUME") \
     PANEL_COIL(ROW, SETUP_TAKE, 25, PANEL_WHEN_IDLE, \
@@ -248,7 +249,7 @@ enum panel_form {
     PANEL_SHOW32(ROW, PROGRAM_CRC, 42, "", 0, "CRC-32 of that program") \
     PANEL_SHOW32(ROW, PROGRAM_MAX, 44, "byte", 0, "largest program") \
     PANEL_SHOW16(ROW, OUTCOME, 46, "", 0, "of the last program or line: 0 none yet, 1 completed, 2 aborted, 3 failed") \
-    PANEL_SHOW16(ROW, RUNS, 47, "", 0, "programs and lines ended so far; wraps") \
+    PANEL_SHOW16(ROW, RUNS, 47, "", 0, "programs, lines, jogs and homings ended so far; wraps") \
     PANEL_SHOW32(ROW, DIGITAL_OUTPUTS, 48, "", 0, "bit i: output i") \
     PANEL_SHOW16(ROW, CONTROL, 50, "", 0, "0 no panel has claimed it, 1 this client has, 2 another") \
     PANEL_SHOW16(ROW, SYSTEM, 51, "", 0, "coordinate system of the line read last: 1 G54 ... 9 G59.3") \

@@ -82,11 +82,13 @@ void takt_service_end_job(struct service *s, enum panel_outcome outcome)
         takt_service_forget_plan(s);
         s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
     }
+    if (s->job == SERVICE_PROGRAM || s->job == SERVICE_MDI)
+        s->outcome = outcome;
     if (s->job != SERVICE_NOTHING) {
         s->takes_back = outcome != PANEL_OUTCOME_COMPLETED;
         if (!s->takes_back)
             keep_tools(s);
-        s->outcome = outcome;
+        s->ended = outcome;
         s->runs++;
     }
     s->job = SERVICE_NOTHING;

@@ -82,7 +82,8 @@ struct service {
     struct inputs inputs;                     /* of the last cycle */
     struct service_health health;
 
-    enum panel_outcome outcome;
+    enum panel_outcome outcome; /* of the last program or line */
+    enum panel_outcome ended;   /* of whatever has run last */
     uint16_t runs;
     uint32_t cycles;
     uint32_t program_size, program_crc; /* size 0: none */

@@ -42,7 +42,7 @@ static void log_outcome(const struct embedded *e)
     static const char digits[] = "0123456789abcdef";
     char digest[17];
     char line[EMBEDDED_LOG_MAX];
-    size_t at = append(line, 0, outcome_names[e->service.outcome]);
+    size_t at = append(line, 0, outcome_names[e->service.ended]);
 
     for (unsigned i = 0; i < 16; i++)
         digest[i] = digits[e->service.digest >> (60 - 4 * i) & 15U];

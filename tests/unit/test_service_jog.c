@@ -83,6 +83,22 @@ static void test_a_jog_ends_as_it_has_begun_whatever_is_set_meanwhile(void)
     TEST_ASSERT_TRUE(shown(REGISTER_POSITION_X) < -29000);
 }
 
+static void test_a_jog_and_homing_leave_the_outcome_of_the_program(void)
+{
+    load("G1 X1\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    wait_for(PANEL_ALARM);
+    must(REGISTER_RESET, 1);
+    must(REGISTER_MODE, PANEL_MODE_JOG);
+    must(REGISTER_JOG_DISTANCE, 1000);
+    must(REGISTER_JOG_PLUS, 1);
+    wait_for(PANEL_IDLE);
+    must(REGISTER_HOME, 1);
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_FAILED, shown(REGISTER_OUTCOME));
+    TEST_ASSERT_EQUAL_INT64(3, shown(REGISTER_RUNS));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -91,5 +107,6 @@ int main(void)
     RUN_TEST(test_a_jog_without_end_is_for_a_panel_in_control);
     RUN_TEST(test_a_jog_without_end_ends_when_control_is_given_up);
     RUN_TEST(test_a_jog_ends_as_it_has_begun_whatever_is_set_meanwhile);
+    RUN_TEST(test_a_jog_and_homing_leave_the_outcome_of_the_program);
     return UNITY_END();
 }

@@ -169,6 +169,16 @@ static void test_the_start_line_of_a_program_is_not_that_of_the_next(void)
     TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_START_LINE));
 }
 
+static void test_coolant_stays_off_in_an_emergency_stop(void)
+{
+    must(REGISTER_FLOOD, 1);
+    must(REGISTER_EMERGENCY_STOP, 1);
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_FLOOD, 1));
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_MIST, 1));
+    must(REGISTER_FLOOD, 0);
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_COOLANT));
+}
+
 static void test_homing_takes_all_axes_to_zero(void)
 {
     start_line("G0 X3 Y2 Z1");
@@ -405,5 +415,6 @@ int main(void)
     RUN_TEST(test_homing_finds_the_homes_of_the_drives_first);
     RUN_TEST(test_a_program_is_taken_in_idle_alone);
     RUN_TEST(test_the_start_line_of_a_program_is_not_that_of_the_next);
+    RUN_TEST(test_coolant_stays_off_in_an_emergency_stop);
     return UNITY_END();
 }
