@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -41,32 +42,76 @@ static void set_raw(int terminal)
     (void)tcsetattr(terminal, TCSANOW, &settings);
 }
 
-/* Another link of an earlier service is replaced, nothing else. */
-static bool place_link(const char *target, const char *link)
+/* Where the link leads; "" if it is none. */
+static void read_link(const char *link, char target[PATH_MAX])
 {
-    struct stat there;
+    const ssize_t length = readlink(link, target, PATH_MAX - 1);
 
-    if (lstat(link, &there) == 0 && S_ISLNK(there.st_mode))
-        (void)unlink(link);
-    return symlink(target, link) == 0;
+    target[length > 0 ? length : 0] = '\0';
 }
 
-/* Opened and closed once: only then is it known to the system that nobody is at the other end. */
-static bool open_terminal(struct console_server *s)
+static bool leads_to(const char *link, const char *terminal)
 {
-    const char *name;
+    char target[PATH_MAX];
+
+    read_link(link, target);
+    return strcmp(target, terminal) == 0;
+}
+
+/* An earlier service has left it: it leads to where terminals are, and none is there any more. */
+static bool is_left_over(const char *link, const char *terminal)
+{
+    const size_t folder = (size_t)(strrchr(terminal, '/') + 1 - terminal);
+    char target[PATH_MAX];
+
+    read_link(link, target);
+    return strncmp(target, terminal, folder) == 0 && access(target, F_OK) != 0;
+}
+
+/* NULL, or why not: what is not ours stays. A terminal that is gone may be ours by its number. */
+static const char *place_link(const char *terminal, const char *link)
+{
+    if (leads_to(link, terminal) || is_left_over(link, terminal))
+        (void)unlink(link);
+    if (symlink(terminal, link) == 0)
+        return NULL;
+    return errno == EEXIST ? "something else is there, or a service that runs: remove it, or name "
+                             "another link"
+                           : strerror(errno);
+}
+
+/*
+ * Opened and closed once: only then is it known to the system that nobody is at the other end.
+ * NULL, or why not.
+ */
+static const char *open_terminal(struct console_server *s)
+{
+    const char *name, *problem;
     int other;
 
     s->terminal = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (s->terminal < 0 || grantpt(s->terminal) != 0 || unlockpt(s->terminal) != 0)
-        return false;
+        return strerror(errno);
     name = ptsname(s->terminal);
-    if (name == NULL || !place_link(name, s->config.link))
-        return false;
+    if (name == NULL)
+        return strerror(errno);
+    problem = place_link(name, s->config.link);
+    if (problem != NULL)
+        return problem;
     other = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
-    if (other >= 0)
-        (void)close(other);
-    return other >= 0;
+    if (other < 0)
+        return strerror(errno);
+    (void)close(other);
+    return NULL;
+}
+
+/* What another has put there by now stays. */
+static void remove_link(const struct console_server *s)
+{
+    const char *name = ptsname(s->terminal);
+
+    if (name != NULL && leads_to(s->config.link, name))
+        (void)unlink(s->config.link);
 }
 
 static void write_output(void *context, const char *text, size_t length)
@@ -147,7 +192,7 @@ bool console_server_open(struct console_server *s, const struct console_server_c
         s->listener = server_listen(config->address, config->port, problem);
         return s->listener >= 0;
     }
-    *problem = open_terminal(s) ? NULL : strerror(errno);
+    *problem = open_terminal(s);
     return *problem == NULL;
 }
 
@@ -334,7 +379,7 @@ void console_server_close(struct console_server *s)
     if (s->sender >= 0 && s->sender != s->terminal)
         close_file(&s->sender);
     if (s->terminal >= 0)
-        (void)unlink(s->config.link);
+        remove_link(s);
     close_file(&s->terminal);
     close_file(&s->listener);
     close_file(&s->wake[0]);

@@ -3,6 +3,8 @@ many short lines at 115200 baud through a pseudo terminal: how long they take be
 
 import json
 import math
+import os
+import subprocess
 import sys
 import time
 
@@ -110,6 +112,31 @@ def on_a_terminal():
     t.check(status == 0, "the service ends in order with a terminal too", err)
 
 
+def is_refused(link, claim):
+    command = [t.TAKT, "serve", "--listen", "127.0.0.1:0", "--http", "off", "--state", "none", "--grbl", f"pty:{link}"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, timeout=p.PATIENCE_S)
+    t.check(ended.returncode == 3 and "remove it, or name another" in ended.stderr, claim, ended.returncode, ended.stderr)
+
+
+def what_stands_at_the_link_stays():
+    """A link of a service that is gone is replaced, nothing else; and each service removes its own alone."""
+    t.write("a file", "kept")
+    os.symlink("a file", "elsewhere")
+    for name in ("a file", "elsewhere"):
+        is_refused(name, f"{name} is not replaced")
+    t.check(os.readlink("elsewhere") == "a file" and os.path.getsize("a file") == 4, "and stays as it is")
+    os.symlink("/dev/pts/gone", "left")
+    service, link = g.serve("pty:./left")
+    own = os.readlink(link)
+    t.check(own != "/dev/pts/gone", "a link to a terminal that is gone is replaced")
+    is_refused(link, "the link of a running service is not taken")
+    t.check(os.readlink(link) == own, "and stays its own")
+    os.unlink(link)
+    os.symlink("a file", link)
+    status, _, err, _ = service.stop()
+    t.check(status == 0 and os.readlink(link) == "a file", "what another has put there is not removed", err)
+
+
 def at_the_speed_of_a_line(count):
     text = wave(count)
     digest, program_s = run_file(text)
@@ -132,4 +159,5 @@ if len(sys.argv) > 1:
 else:
     on_a_socket()
     on_a_terminal()
+    what_stands_at_the_link_stays()
 t.finish()
