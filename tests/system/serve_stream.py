@@ -65,11 +65,46 @@ def is_given_up(client, text):
     client.wait_for("STATE", p.IDLE)
 
 
+def no_other_upload_ends_it(client, other, text):
+    data = text.encode()
+    t.check(begin(client, data) == (0, 0), "a program is streamed")
+    runs = client.counts("RUNS")
+    client.put("CYCLE_START", 1)
+    bring(client, data, len(data) * 3 // 4)
+    try:
+        other.begin_upload(b"M2\n")
+        t.check(False, "another upload is refused while it runs")
+    except p.Refused as refused:
+        t.check(refused.code == 4, "another upload is refused while it runs", refused.code)
+    bring(client, data, len(data))
+    client.wait_while("RUNS", runs)
+    t.check(client.counts("OUTCOME") == p.COMPLETED, "it comes to its end", client.text("ALARM_TEXT"))
+
+
+def is_not_read_after_an_emergency_stop(client, text):
+    first = b"G21 G90 F600\nG1 X20\n"
+    data = first + b"G10 L2 P1 X5\n" * 30 + b"M2\n"
+    begin(client, data)
+    bring(client, data, len(first))
+    client.put("CYCLE_START", 1)
+    client.wait_for("STATE", p.RUNNING)
+    client.put("EMERGENCY_STOP", 1)
+    bring(client, data, len(data) - 10)
+    t.check(begin(client, text.encode())[0] == 4, "nothing is streamed in an emergency stop")
+    client.wait_for("STATE", p.EMERGENCY)
+    p.until(lambda: client.refusal("EMERGENCY_STOP", 0) == (0, 0), lambda: "the button stays in")
+    p.until(lambda: client.refusal("RESET", 1) == (0, 0), lambda: "the drives do not come to rest")
+    client.wait_for("STATE", p.IDLE)
+    t.check(client.get("WORK_OFFSET_X") == 0, "what comes after the stop is not read", client.get("WORK_OFFSET_X"))
+
+
 service = p.serve()
 one = service.client()
 one.wait_for("STATE", p.IDLE)
 runs_while_it_comes(one, wave(900))
 is_given_up(one, wave(900))
+is_not_read_after_an_emergency_stop(one, wave(900))
+no_other_upload_ends_it(one, service.client(), wave(900))
 status, _, err, _ = service.stop()
 t.check(status == 0, "the service ends in order", err)
 t.finish()
