@@ -60,11 +60,23 @@ struct flash_port state_disk_get_port(struct state_disk *disk)
     };
 }
 
+/* A file that is not there comes with its first bytes: one that is there has held something. */
+static bool open_file(struct state_disk *disk, unsigned i, int flags)
+{
+    char name[NAME_MAX_IN];
+
+    (void)snprintf(name, sizeof name, "state-%u", i);
+    disk->file[i] = openat(disk->folder, name, O_RDWR | O_CLOEXEC | flags, FILE_MODE);
+    return disk->file[i] >= 0;
+}
+
 static bool write_file(void *context, unsigned file, uint32_t offset, const uint8_t *bytes,
                        size_t size)
 {
-    const struct state_disk *disk = context;
+    struct state_disk *disk = context;
 
+    if (disk->file[file] < 0 && !open_file(disk, file, O_CREAT))
+        return false;
     while (size > 0) {
         const ssize_t written = pwrite(disk->file[file], bytes, size, (off_t)offset);
 
@@ -83,7 +95,7 @@ static bool sync_file(void *context, unsigned file)
 {
     const struct state_disk *disk = context;
 
-    return fsync(disk->file[file]) == 0;
+    return fsync(disk->file[file]) == 0 && fsync(disk->folder) == 0;
 }
 
 static bool make_mirrors(struct state_disk *disk, uint32_t sector_bytes)
@@ -129,13 +141,12 @@ static bool read_file(struct state_disk *disk, unsigned i)
     return true;
 }
 
-static bool open_file(struct state_disk *disk, unsigned i)
+static bool find_file(struct state_disk *disk, unsigned i)
 {
-    char name[NAME_MAX_IN];
-
-    (void)snprintf(name, sizeof name, "state-%u", i);
-    disk->file[i] = openat(disk->folder, name, O_RDWR | O_CREAT | O_CLOEXEC, FILE_MODE);
-    return disk->file[i] >= 0 && read_file(disk, i);
+    if (!open_file(disk, i, 0))
+        return errno == ENOENT;
+    disk->was_there = true;
+    return read_file(disk, i);
 }
 
 bool state_disk_open(struct state_disk *disk, const char *folder, uint32_t sector_bytes)
@@ -145,7 +156,7 @@ bool state_disk_open(struct state_disk *disk, const char *folder, uint32_t secto
     if (!state_disk_open_on(disk, &ops, sector_bytes))
         return false;
     disk->folder = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (disk->folder >= 0 && open_file(disk, 0) && open_file(disk, 1) && fsync(disk->folder) == 0)
+    if (disk->folder >= 0 && find_file(disk, 0) && find_file(disk, 1) && fsync(disk->folder) == 0)
         return true;
     state_disk_close(disk);
     return false;

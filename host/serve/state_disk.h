@@ -30,12 +30,13 @@ struct state_disk {
     uint8_t *mirror[FLASH_SECTORS]; /* owned */
     uint32_t
         written[FLASH_SECTORS]; /* bytes from the start that are not on the disk yet; 0: none */
-    int file[FLASH_SECTORS];    /* -1: none */
+    int file[FLASH_SECTORS];    /* -1: not there yet */
+    bool was_there;             /* a file of it, when it was opened */
     int folder;
 };
 
 /*
- * Opens or makes the files in a folder that is there. False: errno says why, and nothing is open.
+ * Opens the files in a folder that is there; who writes makes them. False: errno says why, and nothing is open.
  */
 bool state_disk_open(struct state_disk *disk, const char *folder, uint32_t sector_bytes);
 /*

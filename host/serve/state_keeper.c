@@ -58,6 +58,13 @@ const char *state_keeper_get(const struct state_keeper *k, size_t *length)
     return (const char *)bytes;
 }
 
+bool state_keeper_has_lost(const struct state_keeper *k)
+{
+    size_t length;
+
+    return k->disk.was_there && state_keeper_get(k, &length) == NULL;
+}
+
 static void wait_for_wake(struct state_keeper *k)
 {
     while (sem_wait(&k->wake) != 0 && errno == EINTR) {

@@ -49,6 +49,8 @@ struct state_keeper {
 bool state_keeper_open(struct state_keeper *keeper, const char *folder, size_t tools_max);
 /* What was kept last. NULL: nothing. Valid until the first offer. */
 const char *state_keeper_get(const struct state_keeper *keeper, size_t *length);
+/* Something was kept, and neither generation of it is whole. */
+bool state_keeper_has_lost(const struct state_keeper *keeper);
 
 bool state_keeper_start(struct state_keeper *keeper);
 /*

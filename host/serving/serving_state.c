@@ -115,6 +115,16 @@ static void take_parameters(struct serving_state *st, struct session *session)
                                 st->folder);
 }
 
+/* Offsets of 0 in place of those that were kept would drive the tool elsewhere than was set up. */
+static enum command_status refuse_damaged(const struct serving_state *st)
+{
+    message_command_error("--state %s: state-0 and state-1 are damaged: work offsets, tools and "
+                          "parameters that were kept are lost; put back copies of these files, or "
+                          "remove them to set up the machine anew",
+                          st->folder);
+    return STATUS_ENVIRONMENT;
+}
+
 /*
  * What does not fit this machine is left alone: nothing is overwritten that somebody may want back.
  */
@@ -125,7 +135,7 @@ static enum command_status take_state(struct serving_state *st, struct session *
     const char *text = state_keeper_get(&st->keeper, &length);
 
     if (text == NULL)
-        return STATUS_DONE;
+        return state_keeper_has_lost(&st->keeper) ? refuse_damaged(st) : STATUS_DONE;
     if (!state_read(&st->kept, text, length, problem))
         return refuse(st, problem);
     if (strcmp(st->kept.machine, session->setup.machine.name) != 0)

@@ -126,6 +126,44 @@ def check_refusals():
     t.check(status == 2 and "--insecure" in err, "nobody listens to everybody unasked", status, err)
 
 
+def check_damaged(damage, what):
+    """Offsets of zero in place of those that were kept are never taken without a word."""
+    names = ["kept/" + name for name in ("state-0", "state-1") if os.path.exists("kept/" + name)]
+    before = [open(name, "rb").read() for name in names]
+    for name, data in zip(names, before):
+        t.write(name, damage(data))
+    status, _, err = t.run("serve", "--listen", "127.0.0.1:0", "--state", "kept")
+    t.check(status == 3 and "--state kept" in err and "damaged" in err, what + " files are refused", status, err)
+    t.check([open(name, "rb").read() for name in names] == [damage(data) for data in before], what + " files are left as they are")
+    for name, data in zip(names, before):
+        t.write(name, data)
+
+
+def check_one_damaged():
+    """The other generation makes up for it."""
+    service, client = start()
+    client.put("WORK_OFFSET_Y", 3)
+    wait_until_kept("parameter 5222 3\n")
+    client.put("WORK_OFFSET_Y", 4)
+    service.stop()
+    later = max(("kept/state-0", "kept/state-1"), key=lambda name: open(name, "rb").read()[4:8][::-1])
+    data = open(later, "rb").read()
+    t.write(later, bytes(len(data)))
+    service, client = start()
+    t.check(client.get("WORK_OFFSET_Y") in (3, 4), "one generation is enough", client.get("WORK_OFFSET_Y"))
+    service.stop()
+
+
+def check_never_kept():
+    """A service that was killed before it kept anything leaves nothing that could be damaged."""
+    os.makedirs("young", exist_ok=True)
+    t.write("young/lock", "")
+    service = p.serve("--state", "young")
+    service.client().wait_for("STATE", p.IDLE)
+    service.stop()
+    t.check(os.path.exists("young/state-0"), "a folder without files is a new one")
+
+
 def check_default_folder():
     service = p.Service("--listen", "127.0.0.1:0")
     service.client().wait_for("STATE", p.IDLE)
@@ -138,5 +176,10 @@ check_kept()
 check_line()
 check_files_that_change()
 check_refusals()
+check_one_damaged()
+check_damaged(lambda data: bytes(500) + data[500:], "overwritten")
+check_damaged(lambda data: data[:50], "cut")
+check_damaged(lambda data: b"", "emptied")
+check_never_kept()
 check_default_folder()
 t.finish()
