@@ -2,6 +2,7 @@
 
 #include "cli/options.h"
 
+#include "cli/files_read.h"
 #include "cli/message.h"
 #include "cli/suggest.h"
 
@@ -39,6 +40,13 @@ static bool options_set_text(const struct option_row *row, const char **field, c
     }
     *field = value;
     return true;
+}
+
+/* Before anything is opened: the first output may be opened before the last input. */
+static bool options_set_input(const struct option_row *row, const char **field, const char *value)
+{
+    files_read_note(value);
+    return options_set_text(row, field, value);
 }
 
 static bool options_set_list(const struct option_row *row, struct option_list *field,
@@ -97,6 +105,8 @@ static bool options_set(struct options *options, const struct option_row *row, c
         return true;
     case OPTION_TEXT:
         return options_set_text(row, field, value);
+    case OPTION_INPUT:
+        return options_set_input(row, field, value);
     case OPTION_LIST:
         return options_set_list(row, field, value);
     case OPTION_NUMBER:
@@ -158,9 +168,10 @@ static void options_report_unknown(const struct option_row *rows, const char *ar
 static void options_fill_table(const struct option_row *rows, struct option *table)
 {
     static const int has_value[] = {
-        [OPTION_FLAG] = no_argument,           [OPTION_TEXT] = required_argument,
-        [OPTION_LIST] = required_argument,     [OPTION_NUMBER] = required_argument,
-        [OPTION_POSITIVE] = required_argument, [OPTION_LINE] = required_argument};
+        [OPTION_FLAG] = no_argument,         [OPTION_TEXT] = required_argument,
+        [OPTION_INPUT] = required_argument,  [OPTION_LIST] = required_argument,
+        [OPTION_NUMBER] = required_argument, [OPTION_POSITIVE] = required_argument,
+        [OPTION_LINE] = required_argument};
     unsigned count = options_count(rows);
 
     for (unsigned i = 0; i < count; i++)
@@ -217,8 +228,10 @@ static bool options_take_operands(struct options *options, unsigned least, unsig
                               argv[optind + (int)most]);
         return false;
     }
-    for (unsigned i = 0; i < given; i++)
+    for (unsigned i = 0; i < given; i++) {
         options->operand[i] = argv[optind + (int)i];
+        files_read_note(options->operand[i]);
+    }
     options->operands = given;
     if (given < least) {
         message_command_error("a file name is missing; --help shows the usage");

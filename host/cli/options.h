@@ -143,6 +143,7 @@ struct options {
 enum option_kind {
     OPTION_FLAG,     /* bool */
     OPTION_TEXT,     /* const char *, given once */
+    OPTION_INPUT,    /* the same, a file that is read: see files_read.h */
     OPTION_LIST,     /* struct option_list, may be repeated */
     OPTION_NUMBER,   /* double, >= 0 */
     OPTION_POSITIVE, /* double, > 0: 0 says that it is not given */
@@ -165,7 +166,7 @@ struct option_row {
 
 /* Rows in common; each list of rows ends with OPTIONS_END. */
 #define OPTIONS_MACHINE                                                                            \
-    {"machine", OPTION_TEXT, offsetof(struct options, machine), "FILE",                            \
+    {"machine", OPTION_INPUT, offsetof(struct options, machine), "FILE",                           \
      "machine file (default: the built-in mill)"},                                                 \
     {                                                                                              \
         "set", OPTION_LIST, offsetof(struct options, set), "KEY=VALUE",                            \
@@ -183,9 +184,9 @@ struct option_row {
 
 #define OPTIONS_PROGRAM                                                                            \
     OPTIONS_MACHINE,                                                                               \
-        {"tools", OPTION_TEXT, offsetof(struct options, tools), "FILE",                            \
+        {"tools", OPTION_INPUT, offsetof(struct options, tools), "FILE",                           \
          "tool table, LinuxCNC's .tbl; auto: what the program itself says of its tools"},          \
-        {"parameters", OPTION_TEXT, offsetof(struct options, parameters), "FILE",                  \
+        {"parameters", OPTION_INPUT, offsetof(struct options, parameters), "FILE",                 \
          "parameters, LinuxCNC's .var"},                                                           \
         {"dialect", OPTION_TEXT, offsetof(struct options, dialect), "NAME",                        \
          "what the program is written for: auto (default), linuxcnc, grbl, fanuc, haas, mach3, "   \

@@ -2,6 +2,7 @@
 
 #include "cli/output_file.h"
 
+#include "cli/files_read.h"
 #include "cli/message.h"
 
 #include <errno.h>
@@ -53,12 +54,34 @@ static FILE *output_file_open_aside(struct output_file *file)
     return fdopen(descriptor, "w+b");
 }
 
+static bool is_same(const char *a, const char *b)
+{
+    struct stat first, second;
+
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+bool output_file_may_write(const char *path)
+{
+    if (strcmp(path, "-") == 0 || !files_read_has(path))
+        return true;
+    message_command_error("%s is read and would be written over; another name is needed", path);
+    return false;
+}
+
 bool output_file_open(struct output_file *file, const char *path)
+{
+    return output_file_replace(file, path, NULL);
+}
+
+bool output_file_replace(struct output_file *file, const char *path, const char *over)
 {
     bool straight = false;
 
     file->stream = NULL;
     file->aside[0] = '\0';
+    file->replaces = over != NULL && is_same(path, over);
     if (strcmp(path, "-") == 0) {
         (void)snprintf(file->path, sizeof file->path, "<stdout>");
         file->stream = stdout;
@@ -66,6 +89,8 @@ bool output_file_open(struct output_file *file, const char *path)
     }
     if (!output_file_resolve(file, path, &straight))
         return output_file_fail(file, "cannot be created");
+    if (!file->replaces && !output_file_may_write(file->path))
+        return false;
     file->stream = straight ? fopen(file->path, "wb") : output_file_open_aside(file);
     return file->stream != NULL || output_file_fail(file, "cannot be created");
 }
@@ -90,8 +115,13 @@ static bool output_file_keep(const struct output_file *file)
            (fflush(file->stream) == 0 && fsync(fileno(file->stream)) == 0);
 }
 
+/* A file may have been read after this one was opened: a subroutine's, say. */
 bool output_file_finish(struct output_file *file)
 {
+    if (file->aside[0] != '\0' && !file->replaces && !output_file_may_write(file->path)) {
+        output_file_discard(file);
+        return false;
+    }
     return (output_file_keep(file) && output_file_close(file)) ||
            output_file_fail(file, "cannot be written");
 }

@@ -2,6 +2,7 @@
 
 #include "cli/program_text.h"
 
+#include "cli/files_read.h"
 #include "cli/message.h"
 
 #include <fcntl.h>
@@ -27,6 +28,7 @@ static bool open_file(struct program_text *text, const char *path)
         (void)close(file);
         return false;
     }
+    files_read_note(path);
     text->name = path;
     text->is_file = true;
     text->file = file;

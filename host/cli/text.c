@@ -1,5 +1,6 @@
 #include "cli/text.h"
 
+#include "cli/files_read.h"
 #include "cli/message.h"
 
 #include <errno.h>
@@ -83,6 +84,7 @@ static bool text_load(struct text *text, const char *path)
         message_error(text->name, 0, 0, "cannot be opened: %s", strerror(errno));
         return false;
     }
+    files_read_note(path);
     good = text_fill(text, file);
     if (!good) {
         message_error(text->name, 0, 0, "cannot be read: %s", strerror(errno));

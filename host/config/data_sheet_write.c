@@ -34,7 +34,7 @@ static enum command_status write_eds(const struct virtual_drive_config *config, 
     static _Thread_local struct output_file file;
     const char *slash = strrchr(path, '/');
 
-    if (!output_file_open(&file, path))
+    if (!output_file_replace(&file, path, path))
         return STATUS_ENVIRONMENT;
     virtual_drive_init(&drive, config, NULL, &nowhere);
     eds_write(file.stream, &drive.servo, slash != NULL ? slash + 1 : path);

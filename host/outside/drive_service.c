@@ -93,7 +93,7 @@ static bool keep_stored(void *context, const struct servo *drive)
     char path[OUTPUT_PATH_MAX];
 
     store_path(context, drive, path);
-    if (!output_file_open(&file, path))
+    if (!output_file_replace(&file, path, path))
         return false;
     drive_store_write(file.stream, drive);
     return output_file_finish(&file) && output_file_place(&file);

@@ -24,21 +24,15 @@ static bool is_same_file(const char *a, const char *b)
     return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
 }
 
-static bool check_inputs(const struct run_outputs *o, const struct session *session, unsigned i)
+/* Parameters are read and saved in one file. */
+static const char *replaced(const struct run_outputs *o, unsigned i)
 {
-    const struct options *options = session->options;
-    const char *inputs[] = {options->operand[0], options->machine, options->tools, options->probe,
-                            i == RUN_PARAMETERS ? NULL : session->parameter_path};
+    return i == RUN_PARAMETERS ? o->path[i] : NULL;
+}
 
-    for (size_t k = 0; k < sizeof inputs / sizeof inputs[0]; k++) {
-        if (inputs[k] != NULL && strcmp(o->path[i], "-") != 0 &&
-            is_same_file(o->path[i], inputs[k])) {
-            message_command_error("--%s would overwrite %s, which is read", option_names[i],
-                                  inputs[k]);
-            return false;
-        }
-    }
-    return true;
+static bool check_input(const struct run_outputs *o, unsigned i)
+{
+    return replaced(o, i) != NULL || output_file_may_write(o->path[i]);
 }
 
 static bool check_pairs(const struct run_outputs *o, unsigned i)
@@ -111,7 +105,7 @@ bool run_outputs_plan(struct run_outputs *o, const struct session *session)
         (options->pulse_log != NULL && !check_pulse_log(session)))
         return false;
     for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
-        if (o->path[i] != NULL && (!check_inputs(o, session, i) || !check_pairs(o, i)))
+        if (o->path[i] != NULL && (!check_input(o, i) || !check_pairs(o, i)))
             return false;
     }
     o->each_cycle = options->trace != NULL || options->bus_log != NULL || options->report != NULL;
@@ -201,7 +195,7 @@ bool run_outputs_open(struct run_outputs *o, const struct session *session,
                       struct simulation *simulation)
 {
     for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
-        if (o->path[i] != NULL && !output_file_open(&o->file[i], o->path[i])) {
+        if (o->path[i] != NULL && !output_file_replace(&o->file[i], o->path[i], replaced(o, i))) {
             run_outputs_close(o);
             return false;
         }

@@ -36,7 +36,8 @@ struct state_disk {
 };
 
 /*
- * Opens the files in a folder that is there; who writes makes them. False: errno says why, and nothing is open.
+ * Opens the files in a folder that is there; the first write makes them. False: errno says why,
+ * and nothing is open.
  */
 bool state_disk_open(struct state_disk *disk, const char *folder, uint32_t sector_bytes);
 /*

@@ -3,6 +3,7 @@
 #include "simulation/bus_log.h"
 
 #include "cli/message.h"
+#include "cli/output_file.h"
 
 #include <errno.h>
 #include <string.h>
@@ -17,6 +18,8 @@ bool bus_log_open(struct bus_log *log, const char *path)
     log->path = path;
     if (path == NULL)
         return true;
+    if (!output_file_may_write(path))
+        return false;
     log->file = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
     if (log->file == NULL) {
         message_command_error("--bus-log %s: it cannot be written: %s", path, strerror(errno));

@@ -1,5 +1,6 @@
 #include "takt/command.h"
 
+#include "cli/files_read.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/suggest.h"
@@ -80,6 +81,7 @@ static enum command_status run_command(const struct command *command, int argc, 
     struct options options;
 
     message_set_command(command->name);
+    files_read_begin();
     if (!options_read(&options, command->options, command->operands_min, command->operands_max,
                       argc, argv))
         return STATUS_INPUT;

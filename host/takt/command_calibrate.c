@@ -131,7 +131,7 @@ static const struct option_row rows[] = {
     {"noise-um", OPTION_TEXT, offsetof(struct options, correction.noise), "UM",
      "standard deviation of the instrument, um and urad (0.1)"},
     {"seed", OPTION_NUMBER, offsetof(struct options, correction.seed), "N", "of the noise (0)"},
-    {"comp", OPTION_TEXT, offsetof(struct options, correction.comp), "FILE",
+    {"comp", OPTION_INPUT, offsetof(struct options, correction.comp), "FILE",
      "convert LinuxCNC's COMP_FILE of --axis instead of measuring"},
     {"comp-type", OPTION_NUMBER, offsetof(struct options, correction.comp_type), "0|1",
      "its COMP_FILE_TYPE: 0 positions measured (default), 1 corrections"},

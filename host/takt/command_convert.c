@@ -10,7 +10,8 @@ static enum command_status write_file(const struct session *session, const struc
     static struct output_file file;
     enum command_status status;
 
-    if (!output_file_open(&file, options->output != NULL ? options->output : "-"))
+    if (!output_file_replace(&file, options->output != NULL ? options->output : "-",
+                             options->operand[0]))
         return STATUS_ENVIRONMENT;
     status = convert_write(session, file.stream, dialect);
     if (status == STATUS_DONE && !(output_file_finish(&file) && output_file_place(&file)))

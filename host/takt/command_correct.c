@@ -118,7 +118,8 @@ static enum command_status correct(struct session *session, const struct options
         message_command_error("--filter reads standard input: the program is -");
         return STATUS_INPUT;
     }
-    if (!output_file_open(&file, options->output != NULL ? options->output : "-"))
+    if (!output_file_replace(&file, options->output != NULL ? options->output : "-",
+                             options->operand[0]))
         return STATUS_ENVIRONMENT;
     config.out = file.stream;
     status = options->correction.filter ? offline_correct(&config, &totals)
@@ -149,7 +150,7 @@ static enum command_status command_correct_execute(const struct options *options
 
 static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
-    {"table", OPTION_TEXT, offsetof(struct options, correction.table), "FILE",
+    {"table", OPTION_INPUT, offsetof(struct options, correction.table), "FILE",
      "correction table, CSV; in addition to the machine file"},
     {"tolerance", OPTION_TEXT, offsetof(struct options, correction.tolerance), "MM",
      "distance of the written path from the corrected one (0.0005)"},

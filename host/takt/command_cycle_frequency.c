@@ -220,7 +220,7 @@ static enum command_status command_cycle_frequency_execute(const struct options 
 }
 
 static const struct option_row rows[] = {
-    {"machine", OPTION_TEXT, offsetof(struct options, machine), "NAME|FILE",
+    {"machine", OPTION_INPUT, offsetof(struct options, machine), "NAME|FILE",
      "6R13GN1, FP7M, FP7SMN, MA655SM30A, MA655 X, 16K20F3, UCP710, or a machine file (default: the "
      "built-in "
      "mill)"},

@@ -5,6 +5,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "cli/output_file.h"
 #include "outside/drive_service.h"
 #include "outside/drive_setup.h"
 #include "outside/spindle_service.h"
@@ -25,6 +26,8 @@ static bool open_log(const struct options *options, FILE **log)
     *log = options->quiet ? NULL : stdout;
     if (options->log == NULL)
         return true;
+    if (!output_file_may_write(options->log))
+        return false;
     *log = strcmp(options->log, "-") == 0 ? stdout : fopen(options->log, "w");
     if (*log == NULL)
         message_command_error("--log %s: it cannot be written", options->log);
@@ -166,13 +169,13 @@ static const struct option_row rows[] = {
     {"eds", OPTION_TEXT, offsetof(struct options, eds), "FILE|FOLDER",
      "electronic data sheet: with --bus the drives are those of FILE; without, theirs are written "
      "there"},
-    {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
+    {"inject", OPTION_INPUT, offsetof(struct options, inject), "FILE",
      "scripted faults; takt help inject explains them"},
-    {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
+    {"probe", OPTION_INPUT, offsetof(struct options, probe), "FILE",
      "what the drives' touch probes meet, as of takt run"},
     {"target", OPTION_TEXT, offsetof(struct options, target), "NAME",
      "run each drive's firmware in QEMU, on a Cortex-M4 (m4f) or M7 (m7), compared bit for bit"},
-    {"image", OPTION_TEXT, offsetof(struct options, image), "FILE",
+    {"image", OPTION_INPUT, offsetof(struct options, image), "FILE",
      "its image, takt-drive.elf of a build of that target"},
     {"unconfigured", OPTION_FLAG, offsetof(struct options, unconfigured), NULL,
      "drives have no node id before they get one by LSS; --nodes are their serial numbers"},

@@ -97,7 +97,7 @@ static enum command_status command_tune_execute(const struct options *options)
 static const struct option_row rows[] = {
     {"axes", OPTION_TEXT, offsetof(struct options, axes), "LETTERS",
      "XY, say (default: all on CAN)"},
-    {"record", OPTION_TEXT, offsetof(struct options, tune_record), "FILE",
+    {"record", OPTION_INPUT, offsetof(struct options, tune_record), "FILE",
      "a test of a real drive in place of the virtual one's: rows of torque Nm and position, a row "
      "a cycle"},
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",

@@ -2,6 +2,7 @@
 
 #include "trace/trace_reader.h"
 
+#include "cli/files_read.h"
 #include "cli/message.h"
 
 #include <errno.h>
@@ -54,6 +55,7 @@ bool trace_reader_open(struct trace_reader *r, const char *path)
 
     *r = (struct trace_reader){.name = standard ? "<stdin>" : path};
     r->stream = standard ? stdin : fopen(path, "rb");
+    files_read_note(path);
     if (r->stream != NULL)
         return read_header(r);
     message_error(r->name, 0, 0, "cannot be opened: %s", strerror(errno));

@@ -5,6 +5,7 @@
  */
 #define _XOPEN_SOURCE 700
 
+#include "cli/files_read.h"
 #include "cli/output_file.h"
 #include "unity.h"
 
@@ -214,6 +215,24 @@ static void test_what_is_no_regular_file_is_written_straight(void)
     TEST_ASSERT_EQUAL(0, calls);
 }
 
+static void test_a_file_that_is_read_is_not_written_over(void)
+{
+    struct output_file file;
+
+    files_read_begin();
+    files_read_note("a");
+    TEST_ASSERT_FALSE(output_file_open(&file, "./a"));
+    check_text("a", "old");
+    TEST_ASSERT_TRUE(output_file_replace(&file, "a", "./a"));
+    TEST_ASSERT_TRUE(output_file_finish(&file) && output_file_place(&file));
+    files_read_begin();
+    write_new(&file, "a");
+    files_read_note("a");
+    TEST_ASSERT_FALSE(output_file_finish(&file));
+    TEST_ASSERT_EQUAL(1, files_in("."));
+    files_read_begin();
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -224,5 +243,6 @@ int main(void)
     RUN_TEST(test_a_folder_that_cannot_be_brought_to_the_disk_is_no_error);
     RUN_TEST(test_a_file_that_is_given_up_is_not_brought_to_the_disk);
     RUN_TEST(test_what_is_no_regular_file_is_written_straight);
+    RUN_TEST(test_a_file_that_is_read_is_not_written_over);
     return UNITY_END();
 }
