@@ -72,6 +72,12 @@ def check_recipe(name, script):
     with open(name + "_wrong/wrong.log") as file:
         t.check("wrong.ngc:2:4: error:" in file.read(), f"{name}: the log has line and column")
 
+    status, errors = run_steps(script, name + "_same", "parts/a.ngc parts/a.nc parts_a.ngc", "")
+    t.check(status == 2, f"{name}: programs whose names are the same but for their ends or folders", status, errors)
+    t.check(cases(name + "_same/parts_a.xml") != [1, 0, 1], f"{name}: the first keeps its result")
+    t.check(cases(name + "_same/parts_a-2.xml") == [1, 0, 1], f"{name}: the second has its own")
+    t.check(cases(name + "_same/parts_a-3.xml")[1:] == [0, 0], f"{name}: and the third")
+
     status, errors = run_steps(script, name + "_none", "missing/*.ngc", "")
     t.check(status == 2 and "missing/*.ngc" in errors, f"{name}: a pattern that matches nothing fails", errors)
 
@@ -79,6 +85,8 @@ def check_recipe(name, script):
 os.makedirs("parts", exist_ok=True)
 t.write("parts/a.ngc", GOOD)
 t.write("parts/b.ngc", GOOD)
+t.write("parts/a.nc", "G21 G90\nG1 X<2> F600\nM2\n")
+t.write("parts_a.ngc", GOOD)
 t.write("joints.ngc", JOINTS)
 t.write("wrong.ngc", "G21 G90\nG1 X<2> F600\nM2\n")
 check_recipe("github", github_script())
