@@ -83,6 +83,7 @@ struct options {
     const char *operand[OPTION_OPERAND_MAX];
 
     const char *machine;
+    struct option_list with; /* of `takt machine`: files whose keys take the place of its own */
     struct option_list set;
     const char *tools;
     const char *parameters;

@@ -200,44 +200,17 @@ static int reader_take(void *context, const char *section, const char *name, con
     while (value_offset < r->length && r->current[value_offset] != '=' &&
            r->current[value_offset] != ':')
         value_offset++;
-    if (reader_is_new(r, key) && !machine_key_set(r->setup, r->place, key, value, &wrong))
+    if (reader_is_new(r, key) &&
+        !machine_key_set_in(r->setup, r->place, key, value, r->text->name, &wrong))
         reader_error(r, value_offset + 1, wrong.text);
     return 1;
 }
 
-/* Paths in a machine file count from its folder. False: the result would be too long. */
-static bool resolve_path(char *path, const char *machine_file)
-{
-    const char *slash = strrchr(machine_file, '/');
-    size_t folder = slash != NULL ? (size_t)(slash - machine_file) + 1 : 0;
-    size_t length = strlen(path);
-
-    if (length == 0 || path[0] == '/')
-        return true;
-    if (folder + length > MACHINE_SETUP_PATH_MAX)
-        return false;
-    memmove(path + folder, path, length + 1);
-    memcpy(path, machine_file, folder);
-    return true;
-}
-
-static bool resolve_files(struct machine_setup *setup, const char *machine_file)
-{
-    bool fits = resolve_path(setup->volume_table, machine_file);
-
-    for (unsigned i = 0; i < AXIS_COUNT; i++)
-        fits = resolve_path(setup->axis_table[i], machine_file) &&
-               resolve_path(setup->unit_table[i], machine_file) && fits;
-    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
-        fits = resolve_path(setup->drive[i].eds, machine_file) &&
-               resolve_path(setup->drive[i].dcf, machine_file) && fits;
-    return fits;
-}
-
-bool machine_file_read(struct machine_setup *setup, const char *path)
+/* over: sections that change a machine that has its axes already. */
+static bool read_file(struct machine_setup *setup, const char *path, bool over)
 {
     struct text text;
-    struct machine_reader reader = {.setup = setup, .text = &text};
+    struct machine_reader reader = {.setup = setup, .text = &text, .axes_named = over};
     int bad_line;
 
     if (!text_read(&text, path))
@@ -247,16 +220,13 @@ bool machine_file_read(struct machine_setup *setup, const char *path)
         message_error(text.name, (uint32_t)bad_line, 1, "neither a [section] nor key = value");
         reader.errors++;
     }
-    if (!resolve_path(setup->tool_table, path) || !resolve_path(setup->parameter_file, path)) {
-        message_error(text.name, 0, 0, "tool_table or parameter_file: the path is too long");
-        reader.errors++;
-    }
-    if (!resolve_files(setup, path)) {
-        message_error(text.name, 0, 0, "[correction]: the path of a table is too long");
-        reader.errors++;
-    }
     text_free(&text);
     return reader.errors == 0;
+}
+
+bool machine_file_read(struct machine_setup *setup, const char *path)
+{
+    return read_file(setup, path, false);
 }
 
 /* The parts of "axis.X.key" or "bus.key". False: there are not two or three. */
@@ -386,6 +356,10 @@ bool machine_file_load(struct machine_setup *setup, const struct options *option
     machine_setup_set_default(setup);
     if (options->machine != NULL && !machine_file_read(setup, options->machine))
         return false;
+    for (unsigned i = 0; i < options->with.count; i++) {
+        if (!read_file(setup, options->with.item[i], true))
+            return false;
+    }
     for (unsigned i = 0; i < options->set.count; i++) {
         if (!machine_file_assign(setup, options->set.item[i]))
             return false;

@@ -23,8 +23,8 @@ bool machine_file_read(struct machine_setup *setup, const char *path);
 bool machine_file_assign(struct machine_setup *setup, const char *assignment);
 
 /*
- * The machine a command is to use: built in, file, --set in their order, checked as a whole. False
- * after messages.
+ * The machine a command is to use: built in, file, --with, --set in their order, checked as a
+ * whole. False after messages.
  */
 bool machine_file_load(struct machine_setup *setup, const struct options *options);
 

@@ -19,6 +19,11 @@
     {                                                                                              \
         section, name, KEY_TEXT, SCALE_NONE, offset, size, 0, 0, false, meaning, NULL              \
     }
+#define PATH(section, name, offset, meaning)                                                       \
+    {                                                                                              \
+        section, name, KEY_PATH, SCALE_NONE, offset, MACHINE_SETUP_PATH_MAX + 1, 0, 0, false,      \
+            meaning, NULL                                                                          \
+    }
 #define COUNT(section, name, type, offset, from, to, meaning)                                      \
     {                                                                                              \
         section, name, type, SCALE_NONE, offset, 0, from, to, false, meaning, NULL                 \
@@ -137,9 +142,9 @@ const struct machine_key machine_keys[] = {
           "longest change of the tool (M6) by a changer at I/O nodes"),
     TEXT(SECTION_MACHINE, "chain", IN_SETUP(chain), CHAIN_TEXT_MAX,
          "which units carry the part and which the tool, from the part (w) over the bed (b) to the tool (t), such as w C X b Y Z t; empty: w b X Y Z t, a turning table on the bed"),
-    TEXT(SECTION_MACHINE, "tool_table", IN_SETUP(tool_table), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_MACHINE, "tool_table", IN_SETUP(tool_table),
          "LinuxCNC .tbl file; relative to this file's folder; empty: no tools"),
-    TEXT(SECTION_MACHINE, "parameter_file", IN_SETUP(parameter_file), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_MACHINE, "parameter_file", IN_SETUP(parameter_file),
          "LinuxCNC .var file; relative to this file's folder; empty: all parameters 0"),
 
     COUNT(SECTION_AXIS, "type", KEY_AXIS_TYPE, 0, 0, 0,
@@ -267,9 +272,9 @@ const struct machine_key machine_keys[] = {
     COUNT(SECTION_PANEL, "password", KEY_UINT32, IN_SETUP(panel.password), 0, 4294967295,
           "panels must write it to the register PASSWORD before anything else; 0: none"),
 
-    TEXT(SECTION_DRIVE, "eds", offsetof(struct machine_drive, eds), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_DRIVE, "eds", offsetof(struct machine_drive, eds),
          "electronic data sheet (CiA 306): the drive has its objects, PDOs and modes; relative to this file's folder; empty: takt's own drive"),
-    TEXT(SECTION_DRIVE, "dcf", offsetof(struct machine_drive, dcf), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_DRIVE, "dcf", offsetof(struct machine_drive, dcf),
          "concise configuration (CiA 302, 1F22) that the drive of this node, also a real one, is checked against, and else set up by; empty: by takt"),
     COUNT(SECTION_DRIVE, "boot_time_ms", KEY_UINT32, offsetof(struct machine_drive, boot_ms), 0, 600000,
           "from a reset to its boot-up message"),
@@ -375,22 +380,22 @@ const struct machine_key machine_keys[] = {
     CHOICE(SECTION_IO, "inputs", KEY_INPUTS, IN_IO(input),
            "its inputs from bit 0 on: P0 ... P31 (M66), stop and limit (closed circuits that stop the axes when they open), tool_changed (M6 waits for it), - (free); with ! inverted"),
 
-    TEXT(SECTION_CORRECTION, "volume_table", IN_SETUP(volume_table), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_CORRECTION, "volume_table", IN_SETUP(volume_table),
          "CSV table over X Y Z and the turning axis; relative to this file's folder; empty: none"),
-    TEXT(SECTION_CORRECTION, "axis_table_x", IN_SETUP(axis_table[AXIS_X]), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_CORRECTION, "axis_table_x", IN_SETUP(axis_table[AXIS_X]),
          "CSV table over one axis: pitch, straightness, backlash; empty: none"),
-    TEXT(SECTION_CORRECTION, "axis_table_y", IN_SETUP(axis_table[AXIS_Y]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "axis_table_z", IN_SETUP(axis_table[AXIS_Z]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "axis_table_a", IN_SETUP(axis_table[AXIS_A]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "axis_table_b", IN_SETUP(axis_table[AXIS_B]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "axis_table_c", IN_SETUP(axis_table[AXIS_C]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "unit_table_x", IN_SETUP(unit_table[AXIS_X]), MACHINE_SETUP_PATH_MAX + 1,
+    PATH(SECTION_CORRECTION, "axis_table_y", IN_SETUP(axis_table[AXIS_Y]), "likewise"),
+    PATH(SECTION_CORRECTION, "axis_table_z", IN_SETUP(axis_table[AXIS_Z]), "likewise"),
+    PATH(SECTION_CORRECTION, "axis_table_a", IN_SETUP(axis_table[AXIS_A]), "likewise"),
+    PATH(SECTION_CORRECTION, "axis_table_b", IN_SETUP(axis_table[AXIS_B]), "likewise"),
+    PATH(SECTION_CORRECTION, "axis_table_c", IN_SETUP(axis_table[AXIS_C]), "likewise"),
+    PATH(SECTION_CORRECTION, "unit_table_x", IN_SETUP(unit_table[AXIS_X]),
          "CSV table of the errors of a unit over its axis, three shifts and three turns, which act along machine.chain; empty: none"),
-    TEXT(SECTION_CORRECTION, "unit_table_y", IN_SETUP(unit_table[AXIS_Y]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "unit_table_z", IN_SETUP(unit_table[AXIS_Z]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "unit_table_a", IN_SETUP(unit_table[AXIS_A]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "unit_table_b", IN_SETUP(unit_table[AXIS_B]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
-    TEXT(SECTION_CORRECTION, "unit_table_c", IN_SETUP(unit_table[AXIS_C]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    PATH(SECTION_CORRECTION, "unit_table_y", IN_SETUP(unit_table[AXIS_Y]), "likewise"),
+    PATH(SECTION_CORRECTION, "unit_table_z", IN_SETUP(unit_table[AXIS_Z]), "likewise"),
+    PATH(SECTION_CORRECTION, "unit_table_a", IN_SETUP(unit_table[AXIS_A]), "likewise"),
+    PATH(SECTION_CORRECTION, "unit_table_b", IN_SETUP(unit_table[AXIS_B]), "likewise"),
+    PATH(SECTION_CORRECTION, "unit_table_c", IN_SETUP(unit_table[AXIS_C]), "likewise"),
     OF_KNOWN("squareness_urad", SCALE_PPM, squareness_rad, "of Y to X about Z, of Z to X about Y, of Z to Y about X, where unit tables do not contain it"),
     OF_KNOWN("tool_mm", SCALE_NONE, tool_mm, "from spindle nose to tool point: the arm of the turns of units"),
     OF_KNOWN("turn_centre_mm", SCALE_NONE, centre_mm, "a point of the turning axis, about which the turns of its unit act"),

@@ -27,6 +27,7 @@ enum machine_section {
 
 enum machine_key_type {
     KEY_TEXT,
+    KEY_PATH, /* a text, in a file from that file's folder */
     KEY_WORD, /* one of struct machine_key.words: its place among them is the value */
     KEY_UINT32,
     KEY_UINT8,
@@ -121,6 +122,11 @@ const struct machine_key *machine_key_find(const struct machine_setup *setup,
 bool machine_key_set(struct machine_setup *setup, struct machine_place place,
                      const struct machine_key *key, const char *value,
                      struct machine_problem *wrong);
+
+/* The same of a machine file: paths in it count from its folder. */
+bool machine_key_set_in(struct machine_setup *setup, struct machine_place place,
+                        const struct machine_key *key, const char *value, const char *machine_file,
+                        struct machine_problem *wrong);
 
 /* Name of a key in a place: _mm becomes _deg for rotary axes. */
 void machine_key_name(const struct machine_setup *setup, struct machine_place place,

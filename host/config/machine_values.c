@@ -427,6 +427,7 @@ static void write_analogues(const struct value_place *at, const void *field, cha
 
 static const struct value_type types[] = {
     [KEY_TEXT] = {read_text, write_text},
+    [KEY_PATH] = {read_text, write_text},
     [KEY_WORD] = {read_word, write_word},
     [KEY_UINT32] = {read_uint32, write_uint32},
     [KEY_UINT8] = {read_uint8, write_uint8},
@@ -450,6 +451,25 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     const struct value_place at = place_of(setup, place, key);
 
     return types[key->type].read(&at, field, value, wrong);
+}
+
+bool machine_key_set_in(struct machine_setup *setup, struct machine_place place,
+                        const struct machine_key *key, const char *value, const char *machine_file,
+                        struct machine_problem *wrong)
+{
+    const char *slash = strrchr(machine_file, '/');
+    const size_t folder = slash != NULL ? (size_t)(slash - machine_file) + 1 : 0;
+    char path[2 * (MACHINE_SETUP_PATH_MAX + 1)];
+
+    if (key->type != KEY_PATH || value[0] == '\0' || value[0] == '/')
+        return machine_key_set(setup, place, key, value, wrong);
+    if (folder + strlen(value) > MACHINE_SETUP_PATH_MAX) {
+        machine_problem_say(wrong, "%s: with the folder of this file, longer than %d characters",
+                            key->name, MACHINE_SETUP_PATH_MAX);
+        return false;
+    }
+    (void)snprintf(path, sizeof path, "%.*s%s", (int)folder, machine_file, value);
+    return machine_key_set(setup, place, key, path, wrong);
 }
 
 void machine_key_get(const struct machine_setup *setup, struct machine_place place,

@@ -172,7 +172,7 @@ const struct command command_circle = {
         "\n"
         "Examples:\n"
         "  takt circle -o circle.svg\n"
-        "  takt circle --radius 100 --feed 2000 --set axis.X.backlash_mm=0.005 --tolerance 0.01\n"
+        "  takt circle --radius 100 --feed 2000 --set drive.1.backlash_mm=0.005 --tolerance 0.01\n"
         "  takt circle --machine mill3.ini --plane ZX --centre=-50,120 --json -\n",
     .options = rows,
     .operands_min = 0,

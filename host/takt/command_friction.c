@@ -87,7 +87,8 @@ const struct command command_friction = {
         "file cannot be written.\n"
         "\n"
         "Examples:\n"
-        "  takt friction --machine mill3.ini >> mill3.ini\n"
+        "  takt friction --machine mill3.ini -o friction.ini\n"
+        "  takt machine mill3.ini --with friction.ini > measured.ini\n"
         "  takt friction --axes X --set drive.1.coulomb_friction_nm=0.3\n",
     .options = rows,
     .operands_min = 0,

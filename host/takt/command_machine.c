@@ -18,7 +18,8 @@ static bool check(const struct options *options)
         message_command_error("--pack needs -o FILE: settings are no text");
     } else if (!packs && (options->output != NULL || options->pack.sector)) {
         message_command_error("-o and --sector go with --pack");
-    } else if (options->pack.unpack && (options->operands == 0 || options->set.count > 0)) {
+    } else if (options->pack.unpack &&
+               (options->operands == 0 || options->set.count > 0 || options->with.count > 0)) {
         message_command_error("--unpack needs the file of settings, and goes with no other option");
     } else {
         return true;
@@ -55,6 +56,8 @@ static enum command_status command_machine_execute(const struct options *options
 }
 
 static const struct option_row rows[] = {
+    {"with", OPTION_LIST, offsetof(struct options, with), "FILE",
+     "sections that friction, resonance or tune have written: their keys take the place of FILE's"},
     {"set", OPTION_LIST, offsetof(struct options, set), "KEY=VALUE",
      "override a key: axis.X.max_jerk_mm_s3=20000"},
     {"pack", OPTION_FLAG, offsetof(struct options, pack.pack), NULL,
@@ -81,7 +84,9 @@ const struct command command_machine = {
             "\n"
             "Examples:\n"
             "  takt machine > my-mill.ini\n"
-            "  takt machine my-mill.ini --set machine.cycle_us=500\n"
+            "  takt machine my-mill.ini --set axis.X.max_jerk_mm_s3=20000 > stiffer.ini\n"
+            "  takt friction --machine my-mill.ini -o friction.ini\n"
+            "  takt machine my-mill.ini --with friction.ini > measured.ini\n"
             "  takt machine my-mill.ini --pack -o my-mill.settings\n"
             "  takt machine my-mill.settings --unpack\n",
     .options = rows,

@@ -80,4 +80,13 @@ status, _, err = t.run("canon", "tool.ngc", "--tools", t.write("bad.tbl", "T1 P1
 t.check(status == 2 and err.startswith("bad.tbl:2:4: error: "), "errors of tool tables have a place", err)
 status, _, err = t.run("canon", "tool.ngc", "--parameters", t.write("bad.var", "5161 1\n5162 x\n"))
 t.check(status == 2 and err.startswith("bad.var:2:1: error: "), "errors of parameter files have a place", err)
+
+# Sections that commands write take the place of a file's own; all else stays as it is.
+t.write("sub/over.ini", "[axis X]\nmax_jerk_mm_s3 = 7000\n[drive 1]\ncoulomb_friction_nm = 0.25\n")
+before, after = (t.run("machine", "sub/m.ini", *more)[1] for more in ([], ["--with", "sub/over.ini"]))
+changed = [(a, b) for a, b in zip(before.splitlines(), after.splitlines()) if a != b]
+t.check([b for _, b in changed] == ["max_jerk_mm_s3 = 7000", "coulomb_friction_nm = 0.25"] and len(before.splitlines()) == len(after.splitlines()),
+        "--with changes the keys it has", changed)
+status, _, err = t.run("machine", "--with", t.write("wrong_over.ini", "[drive 1]\ncoulomb_friction_nm = x\n"))
+t.check(status == 2 and err.startswith("wrong_over.ini:2:"), "errors of such a file have a place", err)
 t.finish()

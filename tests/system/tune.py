@@ -9,6 +9,7 @@ import struct
 import sys
 
 import takt_test as t
+from torque_record import recorded
 
 MACHINES = int(sys.argv[1]) if len(sys.argv) > 1 else 40
 FIRST = int(sys.argv[2]) if len(sys.argv) > 2 else 0
@@ -139,19 +140,7 @@ t.check(lags[0] > 10 * lags[1] and lags[1] == lags[2], "a run with it lags less,
 again = tune(*load, "--machine", "tuned.ini")[1]
 t.check(again["is_kept"], "what has been tuned is left as it is", again)
 
-# A record of a real drive, of an inertia that its own steps move: 0.5 Nm to and fro, 2.3 ms late, dry friction 0.05 Nm, read to 0.1 um.
-def recorded(cycles=800, fine=50):
-    x = v = 0.0
-    for k in range(cycles):
-        yield 0.5 if (k // 12 + 1) // 2 % 2 == 0 else -0.5, round(x, 4)
-        for i in range(fine):
-            at = math.floor(k + (i + 0.5) / fine - 2.3)
-            torque = 0 if at < 0 else 0.5 if (at // 12 + 1) // 2 % 2 == 0 else -0.5
-            turning = math.copysign(0.05, v) if v else 0
-            v += 10 / (2 * math.pi) * (torque - turning) / 0.0018 * CYCLE_S / fine
-            x += v * CYCLE_S / fine
-
-
+# A record of a real drive.
 t.write("record.txt", "# torque position\n" + "".join(f"{torque} {x}\n" for torque, x in recorded()))
 status, got, err = tune("--record", "record.txt")
 t.check(status == 0 and abs(got["inertia_kg_m2"] / 0.0018 - 1) < 0.02 and abs(got["delay_s"] - 2.3e-3) < 1e-4 and abs(got["dry_friction_nm"] - 0.05) < 0.01,
