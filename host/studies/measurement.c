@@ -211,6 +211,7 @@ enum command_status measurement_run(struct session *session, struct measurement_
     status = simulation_open(session, &simulation);
     if (status != STATUS_DONE)
         return status;
+    simulation->tool_point.is_watched = true; /* also where it has no errors, which are read then */
     status = run(simulation, visits, count, instrument);
     simulation_close(simulation);
     return status;

@@ -249,6 +249,9 @@ t.check(status == 2 and "probe.ngc:2" in err and not os.path.exists("probe-corre
 # ---- LinuxCNC's files, broken tables, wrong words
 
 t.write("x.comp", "0 0 0.001\n10 10.002 9.999\n20 20 20\n")
+status, out, err = t.run("calibrate", "--axis", "X", "--grid", "5")
+numbers = [float(word) for line in out.splitlines()[2:] if line[:1] in "-0123456789" for word in line.split(",")[1:]]
+t.check(status == 0 and numbers and max(map(abs, numbers)) < 1, "a machine without errors has none to correct", status, out, err)
 status, out, err = t.run("calibrate", "--comp", "x.comp", "--axis", "X")
 t.check(status == 0 and "X_mm,KX_up_um,KX_down_um" in out and "\n10,-2,1\n" in out, "a COMP_FILE is converted", out, err)
 
