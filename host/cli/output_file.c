@@ -106,6 +106,20 @@ static bool output_file_close(struct output_file *file)
     return good;
 }
 
+/* Why is asked by a last byte: errno of the write that failed may be of another call by now. */
+bool output_file_tell_failed(struct output_file *file)
+{
+    if (file->stream == NULL || ferror(file->stream) == 0)
+        return false;
+    clearerr(file->stream);
+    errno = 0;
+    if (fputc('\n', file->stream) == EOF || fflush(file->stream) != 0)
+        message_command_error("%s cannot be written: %s", file->path, strerror(errno));
+    else
+        message_command_error("%s: not everything could be written", file->path);
+    return true;
+}
+
 /*
  * A name may reach the disk before what it names: then a power cut leaves an empty file under it.
  */

@@ -30,6 +30,8 @@ bool output_file_replace(struct output_file *file, const char *path, const char 
 bool output_file_may_write(const char *path);
 /* Ends the file. False after a message: not everything could be written; it is given up. */
 bool output_file_finish(struct output_file *file);
+/* True after a message that names it: something could not be written to it so far. */
+bool output_file_tell_failed(struct output_file *file);
 /* Puts a finished file in its place. False after a message: nothing has changed there. */
 bool output_file_place(struct output_file *file);
 /* Gives it up: no trace is left. Nothing happens when it is not open. */

@@ -2,6 +2,7 @@
 
 #include "cli/files_read.h"
 #include "cli/message.h"
+#include "cli/utf8.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -95,11 +96,25 @@ static bool text_load(struct text *text, const char *path)
     return good;
 }
 
+/* It is no part of the text. Nothing binary that is read begins so. */
+static void text_drop_mark(struct text *text)
+{
+    const size_t size = sizeof UTF8_MARK - 1;
+
+    if (text->length < size || memcmp(text->bytes, UTF8_MARK, size) != 0)
+        return;
+    text->length -= size;
+    memmove(text->bytes, text->bytes + size, text->length + 1);
+}
+
 bool text_read(struct text *text, const char *path)
 {
     const struct text_held *held = text_find_held(path);
+    const bool good = held != NULL ? text_copy(text, held) : text_load(text, path);
 
-    return held != NULL ? text_copy(text, held) : text_load(text, path);
+    if (good)
+        text_drop_mark(text);
+    return good;
 }
 
 void text_free(struct text *text)

@@ -31,7 +31,7 @@ void text_hold(const struct text_held *held, unsigned count);
 /* NULL: it is a path. */
 const struct text_held *text_find_held(const char *name);
 
-/* Reads path, "-" for standard input. False after a message: it cannot be opened or read. */
+/* Reads path, "-" for standard input; without the mark of UTF-8 before it. False after a message: it cannot be opened or read. */
 bool text_read(struct text *text, const char *path);
 void text_free(struct text *text);
 

@@ -1,5 +1,7 @@
 #include "editor/lsp_text.h"
 
+#include "cli/utf8.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,38 +59,10 @@ size_t lsp_text_byte(const char *line, size_t length, size_t units)
     return at;
 }
 
-/* Bytes of the character of UTF-8 that begins here; 0: none does. */
-static size_t character_length(const unsigned char *at)
-{
-    static const struct {
-        unsigned char mask, begin, least,
-            most; /* of the second byte: no long forms, no surrogates, none above the last */
-    } forms[] = {
-        {0x80, 0x00, 0, 0},       {0xe0, 0xc0, 0x80, 0xbf}, {0xff, 0xe0, 0xa0, 0xbf},
-        {0xff, 0xed, 0x80, 0x9f}, {0xf0, 0xe0, 0x80, 0xbf}, {0xff, 0xf0, 0x90, 0xbf},
-        {0xff, 0xf4, 0x80, 0x8f}, {0xf8, 0xf0, 0x80, 0xbf},
-    };
-    static const unsigned char lengths[] = {1, 2, 3, 3, 3, 4, 4, 4};
-
-    for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
-        if ((at[0] & forms[i].mask) != forms[i].begin)
-            continue;
-        if (at[0] == 0xc0 || at[0] == 0xc1 || at[0] > 0xf4 ||
-            (lengths[i] > 1 && (at[1] < forms[i].least || at[1] > forms[i].most)))
-            return 0;
-        for (size_t k = 2; k < lengths[i]; k++) {
-            if ((at[k] & 0xc0U) != 0x80U)
-                return 0;
-        }
-        return lengths[i];
-    }
-    return 0;
-}
-
 void lsp_text_clean(char *text)
 {
     while (*text != '\0') {
-        const size_t length = character_length((const unsigned char *)text);
+        const size_t length = utf8_length(text);
 
         if (length == 0)
             *text = '?';

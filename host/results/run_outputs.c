@@ -231,6 +231,15 @@ bool run_outputs_failed(const struct run_outputs *o)
            (o->path[RUN_PULSE_LOG] != NULL && pulse_log_has_failed(&o->pulse_log));
 }
 
+bool run_outputs_tell_failed(struct run_outputs *o)
+{
+    bool told = false;
+
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++)
+        told = (o->path[i] != NULL && output_file_tell_failed(&o->file[i])) || told;
+    return told;
+}
+
 void run_outputs_drop(struct run_outputs *o, enum run_output which)
 {
     output_file_discard(&o->file[which]);
@@ -298,6 +307,8 @@ bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
         good = candump_flush(o->bus_log) && good;
     if (o->path[RUN_PULSE_LOG] != NULL)
         good = pulse_log_end(&o->pulse_log) && good;
+    if (!good && run_outputs_tell_failed(o))
+        return false;
     if (!good) {
         message_command_error("the output files cannot be written: %s",
                               errno != 0 ? strerror(errno) : "out of memory");

@@ -61,6 +61,8 @@ void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
                      const struct block *block);
 /* A write has failed; there is no use in going on. */
 bool run_outputs_failed(const struct run_outputs *o);
+/* True after a message for each file to which something could not be written. */
+bool run_outputs_tell_failed(struct run_outputs *o);
 /* One of them is not wanted after all. */
 void run_outputs_drop(struct run_outputs *o, enum run_output which);
 /*

@@ -1,9 +1,23 @@
 /* The summary as JUnit XML, as CI servers read it: one case a check. */
 #include "results/summary.h"
 
+#include "cli/utf8.h"
+
+/* XML 1.0 has no control characters but spaces, and a file name need not be UTF-8. */
+static size_t write_character(FILE *stream, const char *text)
+{
+    const size_t length = utf8_length(text);
+
+    if (length == 0 || (unsigned char)*text < ' ' || *text == 0x7F) {
+        (void)fputc('?', stream);
+        return 1;
+    }
+    return fwrite(text, 1, length, stream) == length ? length : 1;
+}
+
 static void write_escaped(FILE *stream, const char *text)
 {
-    for (; *text != '\0'; text++) {
+    while (*text != '\0') {
         switch (*text) {
         case '&':
             (void)fputs("&amp;", stream);
@@ -18,10 +32,10 @@ static void write_escaped(FILE *stream, const char *text)
             (void)fputs("&quot;", stream);
             break;
         default:
-            /* XML 1.0 has no other control characters, and a file name need not be UTF-8. */
-            (void)fputc(*text >= ' ' && *text <= '~' ? *text : '?', stream);
-            break;
+            text += write_character(stream, text);
+            continue;
         }
+        text++;
     }
 }
 

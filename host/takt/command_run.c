@@ -135,13 +135,15 @@ static enum command_status finish(struct run_command *c, enum command_status cut
 }
 
 /* What nothing can be kept for. */
-static enum command_status tell_why(const struct run *run)
+static enum command_status tell_why(struct run_command *c)
 {
+    const struct run *run = &c->run;
+
     if (run->verifier.tube.path.failed)
         message_command_error("out of memory");
     else if (run->simulation->target.problem[0] != '\0')
         message_command_error("--target: %s", run->simulation->target.problem);
-    else
+    else if (!run_outputs_tell_failed(&c->outputs))
         message_command_error("the output files cannot be written");
     return STATUS_ENVIRONMENT;
 }
@@ -169,7 +171,7 @@ static enum command_status simulate(struct run_command *c)
         return finish(c, cut);
     run->cut = cut;
     run_end_drives(run);
-    return tell_why(run);
+    return tell_why(c);
 }
 
 static enum command_status execute(struct run_command *c, const struct options *options)
@@ -206,7 +208,7 @@ static const struct option_row rows[] = {
     OPTIONS_DRIVEN,
     {"save-parameters", OPTION_FLAG, offsetof(struct options, save_parameters), NULL,
      "write the parameters back at the end"},
-    {"until", OPTION_NUMBER, offsetof(struct options, until_s), "SECONDS",
+    {"until", OPTION_POSITIVE, offsetof(struct options, until_s), "SECONDS",
      "stop at this time of the program"},
     {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
      "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT; of two buses both, with "

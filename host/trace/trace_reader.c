@@ -4,6 +4,7 @@
 
 #include "cli/files_read.h"
 #include "cli/message.h"
+#include "cli/utf8.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -30,7 +31,9 @@ static bool read_header(struct trace_reader *r)
         message_error(r->name, 0, 0, "the trace is empty");
         return false;
     }
-    r->header = strdup(r->text);
+    r->header = strdup(strncmp(r->text, UTF8_MARK, sizeof UTF8_MARK - 1) == 0
+                           ? r->text + sizeof UTF8_MARK - 1
+                           : r->text);
     if (r->header == NULL) {
         message_command_error("out of memory");
         return false;

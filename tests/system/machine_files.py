@@ -81,6 +81,22 @@ t.check(status == 2 and err.startswith("bad.tbl:2:4: error: "), "errors of tool 
 status, _, err = t.run("canon", "tool.ngc", "--parameters", t.write("bad.var", "5161 1\n5162 x\n"))
 t.check(status == 2 and err.startswith("bad.var:2:1: error: "), "errors of parameter files have a place", err)
 
+# The mark that some editors put before UTF-8 is no part of a text.
+MARK = b"\xef\xbb\xbf"
+t.run("run", "tool.ngc", "--machine", "sub/m.ini", "--trace", "marked.csv", "--quiet")
+for name in ("sub/t.tbl", "sub/p.var", "sub/m.ini", "tool.ngc", "marked.csv"):
+    with open(name, "rb") as file:
+        data = file.read()
+    t.write(name, MARK + data)
+t.write("over.txt", MARK + b"0 50\n")
+t.write("faults.inject", MARK + b"power+50ms drive 1 emcy code=8130\n")
+again = t.run("canon", "tool.ngc", "--machine", "sub/m.ini")
+t.check(again[0] == 0 and again[1] == out, "a mark of UTF-8 changes nothing", again)
+status, _, err = t.run("trace", "marked.csv", "--machine", "sub/m.ini")
+t.check(status == 0, "nor before a trace", status, err)
+status, _, err = t.run("run", "tool.ngc", "--machine", "sub/m.ini", "--override", "over.txt", "--inject", "faults.inject", "--quiet")
+t.check(status != 2 and "error" not in err.replace("fault", ""), "nor before overrides and faults", status, err)
+
 # Sections that commands write take the place of a file's own; all else stays as it is.
 t.write("sub/over.ini", "[axis X]\nmax_jerk_mm_s3 = 7000\n[drive 1]\ncoulomb_friction_nm = 0.25\n")
 before, after = (t.run("machine", "sub/m.ini", *more)[1] for more in ([], ["--with", "sub/over.ini"]))

@@ -124,6 +124,25 @@ if os.path.exists("/dev/full"):
     status, _, err = t.run("run", PROGRAM, "--json", "/dev/full", "--trace", "full.csv", "--quiet")
     t.check(status == 3 and "full" in err and not os.path.exists("full.csv"), "a full disk", status, err)
 
+for option in ("--trace", "--bus-log") if os.path.exists("/dev/full") else ():
+    status, _, err = t.run("run", PROGRAM, option, "/dev/full", "--quiet")
+    t.check(status == 3 and "/dev/full cannot be written: No space left" in err, "a file that cannot be written is named", option, status, err)
+
+# A limit of the shell on the size of files is an error of the file, and leaves nothing.
+before = listing()
+done = subprocess.run(["bash", "-c", 'ulimit -f 100; "$@"', "bash", t.TAKT, "run", PROGRAM, "--trace", "large.csv", "--quiet"], capture_output=True, text=True)
+t.check(done.returncode == 3 and "large.csv cannot be written: File too large" in done.stderr, "a file that is too large", done.returncode, done.stderr)
+t.check(listing() == before, "nothing is left of it", listing())
+
+# JUnit is UTF-8, and so is the name of a program, unless it is something else.
+t.write("Schl\u00fcssel.ngc", text)
+t.run("run", "Schl\u00fcssel.ngc", "--junit", "name.xml", "--quiet")
+t.check("Schl\u00fcssel.ngc" in xml.parse("name.xml").getroot().get("name"), "JUnit has the name of the program")
+with open(b"\xfcber.ngc", "w") as file:
+    file.write(text)
+subprocess.run([t.TAKT, "run", b"\xfcber.ngc", "--junit", "name.xml", "--quiet"], check=False)
+t.check("?ber.ngc" in xml.parse("name.xml").getroot().get("name"), "what is no UTF-8 does not break it")
+
 # Interrupted: the axes come to rest, and the files show the run up to there. The signal is sent when the files are open
 # aside, seen by their names.
 long_program = t.write("long.ngc", "G21 G90 F100\n" + "".join(f"G1 X{i % 2 * 400}\n" for i in range(1, 3000)))
