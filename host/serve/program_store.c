@@ -2,6 +2,7 @@
 
 #include "serve/program_store.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -148,6 +149,18 @@ static bool write_aside(struct program_store *store, const struct stored_text *t
     if (!good)
         forget_file(store);
     return good;
+}
+
+bool program_store_can_keep(struct program_store *store)
+{
+    struct stat status;
+    const bool good = write_aside(store, "", 0);
+
+    forget_file(store);
+    if (!good || store->path == NULL || stat(store->path, &status) != 0 || !S_ISDIR(status.st_mode))
+        return good;
+    errno = EISDIR;
+    return false;
 }
 
 static bool prepare(void *context)

@@ -48,6 +48,8 @@ struct program_store {
  * path stays the caller's. What a power cut has left beside it is removed. False: it is too long.
  */
 bool program_store_open(struct program_store *store, const char *path);
+/* A file could be put at its path. False: errno says why. */
+bool program_store_can_keep(struct program_store *store);
 void program_store_close(struct program_store *store);
 
 /* A program from elsewhere, before anything runs. False: out of memory. */

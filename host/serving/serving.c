@@ -4,6 +4,7 @@
 
 #include "base/crc32.h"
 #include "cli/message.h"
+#include "cli/output_file.h"
 #include "cli/stopwatch.h"
 #include "cli/text.h"
 #include "config/shaper.h"
@@ -11,7 +12,9 @@
 #include "simulation/cutting_feed.h"
 #include "simulation/drives_table.h"
 
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 /* Cycles between two updates of the figures about speed. */
@@ -36,6 +39,20 @@ static bool load_program(struct serving *s, const char *path)
     return good;
 }
 
+/* Else each program that is brought would be refused, whoever brings it. */
+static enum command_status check_store(struct serving *s, const char *path)
+{
+    const char *program = s->session.options->panel.program;
+    const bool is_program = path != NULL && program != NULL && strcmp(path, program) == 0;
+
+    if (path != NULL && !is_program && !output_file_may_write(path))
+        return STATUS_INPUT;
+    if (program_store_can_keep(&s->store))
+        return STATUS_DONE;
+    message_command_error("--store %s: programs cannot be kept there: %s", path, strerror(errno));
+    return STATUS_ENVIRONMENT;
+}
+
 /* --program, or what has been stored before. */
 static enum command_status open_store(struct serving *s)
 {
@@ -43,11 +60,15 @@ static enum command_status open_store(struct serving *s)
     const char *path = options->program;
     const char *store =
         options->store != NULL ? options->store : serving_state_get_program(&s->state);
+    enum command_status status;
 
     if (!program_store_open(&s->store, store)) {
         message_command_error("--store: the path is too long");
         return STATUS_INPUT;
     }
+    status = check_store(s, store);
+    if (status != STATUS_DONE)
+        return status;
     if (path == NULL && store != NULL && access(store, F_OK) == 0)
         path = store;
     return path == NULL || load_program(s, path) ? STATUS_DONE : STATUS_INPUT;

@@ -143,6 +143,9 @@ def check_bus_log():
     t.check(cycles - 2 <= syncs <= cycles, "there is a SYNC for each cycle", syncs, cycles)
     status, _, err = t.run("serve", "--listen", "127.0.0.1:0", "--bus-log", "no/such/folder/serve.log")
     t.check(status == 3 and "--bus-log no/such/folder/serve.log: it cannot be written" in err, "a log needs a place", status, err)
+    for place in ("no/such/folder/program.ngc", "."):
+        status, _, err = t.run("serve", "--listen", "127.0.0.1:0", "--http", "off", "--state", "none", "--store", place)
+        t.check(status == 3 and f"--store {place}: programs cannot be kept there" in err, "and so does a store", status, err)
 
 
 def check_errors_of_programs():
