@@ -82,16 +82,19 @@ static bool options_set_positive(const struct option_row *row, double *field, co
     return false;
 }
 
-static bool options_set_line(const struct option_row *row, uint32_t *field, const char *value)
+static bool options_set_count(const struct option_row *row, uint32_t *field, const char *value)
 {
     char *end;
-    double line = strtod(value, &end);
+    double count = strtod(value, &end);
 
-    if (end == value || *end != '\0' || !(line >= 1 && line <= UINT32_MAX) || line != floor(line)) {
-        message_command_error("--%s %s: the number of a line is expected", row->name, value);
+    if (end == value || *end != '\0' || !(count >= 1 && count <= UINT32_MAX) ||
+        count != floor(count)) {
+        message_command_error("--%s %s: %s is expected", row->name, value,
+                              row->kind == OPTION_LINE ? "the number of a line"
+                                                       : "a whole number from 1 on");
         return false;
     }
-    *field = (uint32_t)line;
+    *field = (uint32_t)count;
     return true;
 }
 
@@ -114,7 +117,8 @@ static bool options_set(struct options *options, const struct option_row *row, c
     case OPTION_POSITIVE:
         return options_set_positive(row, field, value);
     case OPTION_LINE:
-        return options_set_line(row, field, value);
+    case OPTION_COUNT:
+        return options_set_count(row, field, value);
     }
     return false;
 }
@@ -171,7 +175,7 @@ static void options_fill_table(const struct option_row *rows, struct option *tab
         [OPTION_FLAG] = no_argument,         [OPTION_TEXT] = required_argument,
         [OPTION_INPUT] = required_argument,  [OPTION_LIST] = required_argument,
         [OPTION_NUMBER] = required_argument, [OPTION_POSITIVE] = required_argument,
-        [OPTION_LINE] = required_argument};
+        [OPTION_LINE] = required_argument,   [OPTION_COUNT] = required_argument};
     unsigned count = options_count(rows);
 
     for (unsigned i = 0; i < count; i++)

@@ -47,7 +47,7 @@ struct option_panel {
     const char *spindle; /* where its drive is; see `takt help serve` */
     double unit;         /* on the serial line; 0: 1 */
     double interval_s;   /* of `takt panel watch`; 0: its default */
-    double count;        /* of `takt panel watch`; 0: without end */
+    uint32_t count;      /* of `takt panel watch`; 0: without end */
     double timeout_s;
     double password;
     bool insecure;
@@ -148,7 +148,8 @@ enum option_kind {
     OPTION_LIST,     /* struct option_list, may be repeated */
     OPTION_NUMBER,   /* double, >= 0 */
     OPTION_POSITIVE, /* double, > 0: 0 says that it is not given */
-    OPTION_LINE      /* uint32_t, >= 1 */
+    OPTION_LINE,     /* uint32_t, >= 1: the number of a line */
+    OPTION_COUNT     /* uint32_t, >= 1 */
 };
 
 struct option_row {

@@ -82,8 +82,9 @@ static bool open_place(struct spindle_service *s, const char *where, struct serv
     (void)snprintf(s->address, sizeof s->address, "%s", where);
     if (serving_options_split(s->address, &config->address, &config->port))
         return true;
-    message_command_error("--spindle %s: HOST:PORT, or the path of a serial line, is expected",
-                          where);
+    message_command_error(
+        "--spindle %s: HOST:PORT, PORT at most 65535, or the path of a serial line, is expected",
+        where);
     return false;
 }
 
@@ -98,8 +99,9 @@ static void say_where(const struct spindle_service *s)
     (void)fflush(stdout);
 }
 
-bool spindle_service_start(struct spindle_service *s, const struct machine_setup *setup,
-                           const char *where, uint8_t unit, bool quiet)
+enum command_status spindle_service_start(struct spindle_service *s,
+                                          const struct machine_setup *setup, const char *where,
+                                          uint8_t unit, bool quiet)
 {
     const struct virtual_spindle_config spindle = machine_setup_get_spindle(setup);
     struct server_config config = {
@@ -114,16 +116,16 @@ bool spindle_service_start(struct spindle_service *s, const struct machine_setup
     s->map = vfd_registers_get_map(&s->registers);
     s->time_ns = stopwatch_now_ns();
     if (!open_place(s, where, &config))
-        return false;
+        return strchr(where, '/') != NULL ? STATUS_ENVIRONMENT : STATUS_INPUT;
     if (!server_open(&s->server, &config, &problem) || !server_start(&s->server)) {
         message_command_error("--spindle %s: %s", where,
                               problem != NULL ? problem : "no thread for it");
         server_close(&s->server);
-        return false;
+        return STATUS_ENVIRONMENT;
     }
     if (!quiet)
         say_where(s);
-    return true;
+    return STATUS_DONE;
 }
 
 void spindle_service_stop(struct spindle_service *service)

@@ -5,6 +5,7 @@
 #ifndef TAKT_HOST_SPINDLE_SERVICE_H
 #define TAKT_HOST_SPINDLE_SERVICE_H
 
+#include "cli/status.h"
 #include "config/machine_setup.h"
 #include "serve/serial_line.h"
 #include "serve/server.h"
@@ -25,10 +26,11 @@ struct spindle_service {
 
 /*
  * where: HOST:PORT, or PATH[,BAUD[,PARITY]] with a '/' in it. Says on stdout where it is, unless
- * quiet. False after a message: nothing is open.
+ * quiet. Else than STATUS_DONE after a message: nothing is open.
  */
-bool spindle_service_start(struct spindle_service *service, const struct machine_setup *setup,
-                           const char *where, uint8_t unit, bool quiet);
+enum command_status spindle_service_start(struct spindle_service *service,
+                                          const struct machine_setup *setup, const char *where,
+                                          uint8_t unit, bool quiet);
 void spindle_service_stop(struct spindle_service *service);
 
 #endif

@@ -36,7 +36,7 @@ static bool set_place(struct panel_line *line, const struct option_panel *option
         (void)snprintf(line->address, sizeof line->address, "%s", address);
         if (serving_options_split(line->address, &config->host, &config->port))
             return true;
-        message_command_error("--connect %s: HOST:PORT is expected", address);
+        message_command_error("--connect %s: HOST:PORT is expected, PORT at most 65535", address);
         return false;
     }
     if (!serial_settings_read(&line->serial, options->serial)) {

@@ -9,7 +9,9 @@
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define ALLOW_ENTRY_MAX 63
@@ -36,12 +38,18 @@ static bool read_allowed(struct allow_list *allowed, const char *text)
     return true;
 }
 
+/* A number that sockets would cut to another, silently. Names of services are found elsewhere. */
+static bool is_beyond_ports(const char *port)
+{
+    return port[strspn(port, "0123456789")] == '\0' && strtod(port, NULL) > UINT16_MAX;
+}
+
 /* The last colon parts them: IPv6 addresses have some of their own. */
 bool serving_options_split(char *text, const char **host, const char **port)
 {
     char *colon = strrchr(text, ':');
 
-    if (colon == NULL || colon == text || colon[1] == '\0')
+    if (colon == NULL || colon == text || colon[1] == '\0' || is_beyond_ports(colon + 1))
         return false;
     *colon = '\0';
     *port = colon + 1;
@@ -79,7 +87,7 @@ static bool read_address(struct serving_options *options, const struct session *
     if (given[0] == '\0' ||
         serving_options_split(options->address, &config->address, &config->port))
         return true;
-    message_command_error("--listen %s: HOST:PORT is expected", given);
+    message_command_error("--listen %s: HOST:PORT is expected, PORT at most 65535", given);
     return false;
 }
 
@@ -174,7 +182,7 @@ bool serving_options_read_page(struct serving_options *options, const struct ses
         return true;
     (void)snprintf(options->http, sizeof options->http, "%s", given != NULL ? given : HTTP_DEFAULT);
     if (!serving_options_split(options->http, &config->address, &config->port)) {
-        message_command_error("--http %s: HOST:PORT or off is expected", given);
+        message_command_error("--http %s: HOST:PORT or off is expected, PORT at most 65535", given);
         return false;
     }
     return read_allowed(&config->allowed, session->setup.panel.allow) &&
@@ -195,7 +203,8 @@ bool serving_options_read_console(struct serving_options *options, const struct 
     }
     if (strncmp(given, tcp, sizeof tcp - 1) != 0 ||
         !serving_options_split(options->grbl + sizeof tcp - 1, &config->address, &config->port)) {
-        message_command_error("--grbl %s: tcp:HOST:PORT or pty:LINK is expected", given);
+        message_command_error(
+            "--grbl %s: tcp:HOST:PORT, PORT at most 65535, or pty:LINK is expected", given);
         return false;
     }
     return read_allowed(&config->allowed, session->setup.panel.allow) &&

@@ -36,7 +36,7 @@ bool serving_options_read_page(struct serving_options *options, const struct ses
 bool serving_options_read_console(struct serving_options *options, const struct session *session,
                                   struct console_server_config *config);
 
-/* HOST:PORT or [HOST]:PORT apart, in *text. False: it is neither. */
+/* HOST:PORT or [HOST]:PORT apart, in *text. False: it is neither, or PORT is above 65535. */
 bool serving_options_split(char *text, const char **host, const char **port);
 
 /* --unit: 1 if it is not given. False after a message. */

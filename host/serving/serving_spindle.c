@@ -48,7 +48,8 @@ static bool open_outside(struct serving_spindle *s, const struct machine_setup *
     struct client_config config = {.unit = unit, .timeout_ms = ANSWER_MS};
 
     if (!set_place(s, where, &config)) {
-        message_command_error("--spindle %s: HOST:PORT, or the path of a serial line, is expected",
+        message_command_error("--spindle %s: HOST:PORT, PORT at most 65535, or the path of a "
+                              "serial line, is expected",
                               where);
         return false;
     }

@@ -84,7 +84,7 @@ static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
      "the compiled program (also -o)"},
-    {"ceiling", OPTION_NUMBER, offsetof(struct options, ceiling), "PERCENT",
+    {"ceiling", OPTION_POSITIVE, offsetof(struct options, ceiling), "PERCENT",
      "highest feed override for its runs, 100 (default) to 120"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no figures, no progress bar"},
     OPTIONS_END,

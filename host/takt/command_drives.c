@@ -75,14 +75,15 @@ static enum command_status serve_with_spindle(struct drive_setup *setup)
 {
     static struct spindle_service spindle;
     const struct options *options = setup->options;
-    enum command_status status = STATUS_DONE;
+    enum command_status status;
     uint8_t unit;
 
     if (!serving_options_unit(options->panel.unit, &unit))
         return STATUS_INPUT;
-    if (!spindle_service_start(&spindle, &setup->machine, options->panel.spindle, unit,
-                               options->quiet))
-        return STATUS_ENVIRONMENT;
+    status = spindle_service_start(&spindle, &setup->machine, options->panel.spindle, unit,
+                                   options->quiet);
+    if (status != STATUS_DONE)
+        return status;
     if (options->bus != NULL)
         status = serve(setup);
     else
@@ -159,7 +160,7 @@ static const struct option_row rows[] = {
      "socketcan:IF, slcan:PATH, slcan:pty, socketcand:HOST:PORT, socketcand:listen:PORT"},
     {"spindle", OPTION_TEXT, offsetof(struct options, panel.spindle), "WHERE",
      "virtual spindle on Modbus: HOST:PORT, or PATH[,BAUD[,PARITY]] of a serial line"},
-    {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
+    {"unit", OPTION_POSITIVE, offsetof(struct options, panel.unit), "N",
      "unit of the spindle on its serial line (default 1)"},
     {"nodes", OPTION_TEXT, offsetof(struct options, nodes), "LIST",
      "node ids, 1-3 or 1,2,5 (default: those of the machine's axes)"},

@@ -133,13 +133,17 @@ static enum command_status watch(struct panel_line *line, const struct options *
     enum panel_id id[WATCH_NAMES_MAX];
     unsigned count = options->operands - 1;
 
-    if (interval_s > INTERVAL_MAX_S || !find_names(options, id))
+    if (interval_s > INTERVAL_MAX_S) {
+        message_command_error("--interval %g: at most %d s", interval_s, INTERVAL_MAX_S);
+        return STATUS_INPUT;
+    }
+    if (!find_names(options, id))
         return STATUS_INPUT;
     if (count == 0) {
         count = sizeof usual / sizeof usual[0];
         memcpy(id, usual, sizeof usual);
     }
-    for (double shown = 0; !interrupt_asked(); wait_for(interval_s)) {
+    for (uint32_t shown = 0; !interrupt_asked(); wait_for(interval_s)) {
         if (!show_line(line, id, count))
             return STATUS_ENVIRONMENT;
         if (++shown == options->panel.count)
@@ -217,14 +221,14 @@ static const struct option_row rows[] = {
      "Modbus TCP (default 127.0.0.1:1502)"},
     {"serial", OPTION_TEXT, offsetof(struct options, panel.serial), "PATH[,BAUD[,PARITY]]",
      "Modbus RTU instead (default 19200, even)"},
-    {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N", "unit asked (default 1)"},
-    {"timeout", OPTION_NUMBER, offsetof(struct options, panel.timeout_s), "S",
+    {"unit", OPTION_POSITIVE, offsetof(struct options, panel.unit), "N", "unit asked (default 1)"},
+    {"timeout", OPTION_POSITIVE, offsetof(struct options, panel.timeout_s), "S",
      "for an answer (default 2 s)"},
     {"password", OPTION_NUMBER, offsetof(struct options, panel.password), "N",
      "written before anything else"},
-    {"interval", OPTION_NUMBER, offsetof(struct options, panel.interval_s), "S",
+    {"interval", OPTION_POSITIVE, offsetof(struct options, panel.interval_s), "S",
      "of watch (default 0.5 s)"},
-    {"count", OPTION_NUMBER, offsetof(struct options, panel.count), "N",
+    {"count", OPTION_COUNT, offsetof(struct options, panel.count), "N",
      "watch: so many lines (default: until Ctrl-C)"},
     {"start", OPTION_FLAG, offsetof(struct options, panel.starts), NULL,
      "stream: write CYCLE_START when the buffer is full or the file complete"},

@@ -96,7 +96,7 @@ static const struct option_row rows[] = {
      "Grbl 1.1's interface for one sender: on a socket, or a pseudo terminal that LINK names"},
     {"serial", OPTION_TEXT, offsetof(struct options, panel.serial), "PATH[,BAUD[,PARITY]]",
      "Modbus RTU of the panel too (default 19200, even)"},
-    {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
+    {"unit", OPTION_POSITIVE, offsetof(struct options, panel.unit), "N",
      "unit on the serial line (default 1)"},
     {"program", OPTION_INPUT, offsetof(struct options, panel.program), "FILE",
      "load this program; CYCLE_START starts it"},

@@ -176,7 +176,7 @@ static const struct option_row rows[] = {
      "where the page is (default 127.0.0.1:8080; port 0: any)"},
     {"insecure", OPTION_FLAG, offsetof(struct options, panel.insecure), NULL,
      "listen beyond this computer though neither panel.allow nor panel.password is set"},
-    {"speed", OPTION_NUMBER, offsetof(struct options, speed), "N",
+    {"speed", OPTION_POSITIVE, offsetof(struct options, speed), "N",
      "so many times as fast as it was (default 1)"},
     OPTIONS_END,
 };

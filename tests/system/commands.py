@@ -121,4 +121,23 @@ t.check(status == 1 and "more rows" in out, "a shorter trace", out)
 status, _, err = t.run("trace", t.write("bad.csv", "\n".join(rows[:5]) + "\n1,2,x\n"))
 t.check(status == 2 and err.startswith("bad.csv:6:5: error: "), "a broken trace", err)
 t.check(t.run("trace", t.write("no.csv", "a,b\n1,2\n"))[0] == 2, "no trace at all")
+
+# Numbers that would be taken for something else are refused: ports that sockets cut to 16 bits, 0 where 0 says "not given".
+PANEL = "panel", "watch", "STATE", "--connect", "127.0.0.1:1"
+for words, *arguments in (
+    ("65535", "view", "a.csv", "--http", "127.0.0.1:99999"),
+    ("65535", "serve", "--state", "none", "--http", "127.0.0.1:66000"),
+    ("65535", "serve", "--state", "none", "--listen", "127.0.0.1:65537"),
+    ("65535", "serve", "--state", "none", "--listen", "127.0.0.1:0", "--http", "off", "--grbl", "tcp:127.0.0.1:99999"),
+    ("127.0.0.1:99999", "drives", "--spindle", "127.0.0.1:99999"),
+    ("65535", "panel", "read", "STATE", "--connect", "127.0.0.1:99999"),
+    ("--until 0: it must be above 0", "run", PROGRAM, "--until", "0"),
+    ("--ceiling 0: it must be above 0", "compile", PROGRAM, "-o", "x.plan", "--ceiling", "0"),
+    ("--speed 0", "view", "a.csv", "--speed", "0"),
+    ("--count 1.5: a whole number from 1 on", *PANEL, "--count", "1.5"),
+    ("--count 0: a whole number from 1 on", *PANEL, "--count", "0"),
+    ("--interval 0", *PANEL, "--interval", "0"),
+):
+    status, _, err = t.run(*arguments)
+    t.check(status == 2 and words in err, "refused with a reason", arguments, status, err)
 t.finish()
