@@ -255,10 +255,10 @@
     X(MACHINE_TRAVEL, "axis %w: its travel ends before it begins")                                 \
     X(MACHINE_TRAVEL_ZERO, "axis %w: its travel must include 0, where the drives start")           \
     X(MACHINE_INCREMENTS,                                                                          \
-      "axis %w: at %v increments per length its travel does not fit a drive's 32 bits")            \
+      "axis %w: at increments_per_mm %v its travel does not fit a drive's 32 bits")                \
     X(MACHINE_ACCELERATION,                                                                        \
-      "axis %w: its acceleration is too low for so short a cycle: at least %v")                    \
-    X(MACHINE_JERK, "axis %w: its jerk is too low for so short a cycle: at least %v")              \
+      "axis %w: max_acceleration is too low for so short a cycle: at least %v")                    \
+    X(MACHINE_JERK, "axis %w: max_jerk is too low for so short a cycle: at least %v")              \
     X(MACHINE_STEP_RATE,                                                                           \
       "axis %w: at max_velocity its steps come at %v Hz, above its step_rate_max_hz of %l")        \
     X(MACHINE_STEPS, "axis %w: its travel does not fit 32 bits of steps")                          \

@@ -3,6 +3,7 @@
 #include "cli/message.h"
 #include "cli/text.h"
 #include "config/machine_keys.h"
+#include "config/machine_lines.h"
 
 #include <ini.h>
 #include <stdint.h>
@@ -29,7 +30,7 @@ struct machine_reader {
     bool in_values;   /* or [values] */
     bool place_known; /* it is another one that is known */
     struct machine_place place;
-    uint32_t set_in_line[MACHINE_KEYS_MAX][MACHINE_SETUP_DRIVES_MAX]; /* 0: not yet */
+    struct machine_lines *lines;
 };
 
 /* Column of the first character from offset on that is no space. */
@@ -133,18 +134,18 @@ static char *reader_next_line(char *buffer, int size, void *context)
     return buffer;
 }
 
-static bool reader_is_new(struct machine_reader *r, const struct machine_key *key)
+static bool reader_is_new(struct machine_reader *r, const struct machine_key *key, size_t value)
 {
-    uint32_t *line = &r->set_in_line[key - machine_keys][r->place.index];
+    struct machine_line *line = machine_lines_find(r->lines, r->place, key);
     char text[MACHINE_FILE_WORD_MAX + 64];
 
-    if (*line != 0) {
+    if (line->file == r->text->name) {
         (void)snprintf(text, sizeof text, "%s is given twice; first in line %u", key->name,
-                       (unsigned)*line);
+                       (unsigned)line->line);
         reader_error(r, 0, text);
         return false;
     }
-    *line = r->line;
+    *line = (struct machine_line){r->text->name, r->line, column_of(r, value)};
     return true;
 }
 
@@ -200,17 +201,19 @@ static int reader_take(void *context, const char *section, const char *name, con
     while (value_offset < r->length && r->current[value_offset] != '=' &&
            r->current[value_offset] != ':')
         value_offset++;
-    if (reader_is_new(r, key) &&
+    if (reader_is_new(r, key, value_offset + 1) &&
         !machine_key_set_in(r->setup, r->place, key, value, r->text->name, &wrong))
         reader_error(r, value_offset + 1, wrong.text);
     return 1;
 }
 
 /* over: sections that change a machine that has its axes already. */
-static bool read_file(struct machine_setup *setup, const char *path, bool over)
+static bool read_file(struct machine_setup *setup, const char *path, bool over,
+                      struct machine_lines *lines)
 {
     struct text text;
-    struct machine_reader reader = {.setup = setup, .text = &text, .axes_named = over};
+    struct machine_reader reader = {
+        .setup = setup, .text = &text, .axes_named = over, .lines = lines};
     int bad_line;
 
     if (!text_read(&text, path))
@@ -226,7 +229,9 @@ static bool read_file(struct machine_setup *setup, const char *path, bool over)
 
 bool machine_file_read(struct machine_setup *setup, const char *path)
 {
-    return read_file(setup, path, false);
+    struct machine_lines lines = {0};
+
+    return read_file(setup, path, false, &lines);
 }
 
 /* The parts of "axis.X.key" or "bus.key". False: there are not two or three. */
@@ -351,13 +356,14 @@ static bool set_driven(struct machine_setup *setup, const struct options *option
 
 bool machine_file_load(struct machine_setup *setup, const struct options *options)
 {
+    struct machine_lines lines = {0};
     const char *wrong;
 
     machine_setup_set_default(setup);
-    if (options->machine != NULL && !machine_file_read(setup, options->machine))
+    if (options->machine != NULL && !read_file(setup, options->machine, false, &lines))
         return false;
     for (unsigned i = 0; i < options->with.count; i++) {
-        if (!read_file(setup, options->with.item[i], true))
+        if (!read_file(setup, options->with.item[i], true, &lines))
             return false;
     }
     for (unsigned i = 0; i < options->set.count; i++) {
@@ -367,13 +373,9 @@ bool machine_file_load(struct machine_setup *setup, const struct options *option
     if (!set_driven(setup, options))
         return false;
     wrong = machine_setup_check(setup);
-    if (wrong == NULL)
-        return true;
-    if (options->machine != NULL)
-        message_error(options->machine, 0, 0, "%s", wrong);
-    else
-        message_command_error("%s", wrong);
-    return false;
+    if (wrong != NULL)
+        machine_lines_report(&lines, setup, options->machine, wrong);
+    return wrong == NULL;
 }
 
 static void write_section(FILE *file, const struct machine_setup *setup, struct machine_place place)

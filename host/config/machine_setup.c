@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #define DEGREE (MATHS_PI / 180.0)
 
@@ -84,14 +85,40 @@ __attribute__((format(printf, 1, 2))) static const char *problem(const char *for
     return text;
 }
 
+/* What a number that is in its key's range is out of. */
+static const char *bound_of(const char *field)
+{
+    static const struct {
+        const char *field, *bound;
+    } bounds[] = {
+        {"hard_stop_min_mm", "; it is at most start_mm"},
+        {"hard_stop_max_mm", "; it is at least start_mm"},
+        {"limit_switch_max_mm", "; it is above limit_switch_min_mm"},
+        {"loop_period_us", "; so slow loops do not reach velocity_bandwidth_hz"},
+    };
+
+    for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
+        if (strcmp(field, bounds[i].field) == 0)
+            return bounds[i].bound;
+    }
+    return "";
+}
+
 static const char *check_drive(const struct machine_setup *setup, unsigned index)
 {
     const char *field = drive_plant_check(&setup->drive[index].plant);
     const unsigned node = index < MACHINE_SECOND_DRIVE
                               ? setup->machine.axis[index].drive_node
                               : setup->machine.gantry[index - MACHINE_SECOND_DRIVE].drive_node;
+    const unsigned bus = index < MACHINE_SECOND_DRIVE
+                             ? setup->machine.axis[index].drive_bus
+                             : setup->machine.gantry[index - MACHINE_SECOND_DRIVE].drive_bus;
 
-    return field == NULL ? NULL : problem("drive %u: %s is out of range", node, field);
+    if (field == NULL)
+        return NULL;
+    if (bus > 0)
+        return problem("drive %u:%u: %s is out of range%s", bus, node, field, bound_of(field));
+    return problem("drive %u: %s is out of range%s", node, field, bound_of(field));
 }
 
 /* The first bus that cannot, with advice for the machine as a whole. */

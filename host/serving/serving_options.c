@@ -75,6 +75,21 @@ bool serving_options_unit(double given, uint8_t *unit)
     return true;
 }
 
+bool serving_options_check(const struct machine_setup *setup)
+{
+    char address[MACHINE_SETUP_PATH_MAX + 1];
+    const char *host, *port;
+    struct allow_list allowed;
+
+    (void)snprintf(address, sizeof address, "%s", setup->panel.listen);
+    if (address[0] != '\0' && !serving_options_split(address, &host, &port)) {
+        message_command_error("panel.listen %s: HOST:PORT is expected, PORT at most 65535",
+                              setup->panel.listen);
+        return false;
+    }
+    return read_allowed(&allowed, setup->panel.allow);
+}
+
 static bool read_address(struct serving_options *options, const struct session *session,
                          struct server_config *config)
 {

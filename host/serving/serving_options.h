@@ -36,6 +36,9 @@ bool serving_options_read_page(struct serving_options *options, const struct ses
 bool serving_options_read_console(struct serving_options *options, const struct session *session,
                                   struct console_server_config *config);
 
+/* What a machine file says of the panel can be served. False after a message. */
+bool serving_options_check(const struct machine_setup *setup);
+
 /* HOST:PORT or [HOST]:PORT apart, in *text. False: it is neither, or PORT is above 65535. */
 bool serving_options_split(char *text, const char **host, const char **port);
 

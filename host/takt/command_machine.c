@@ -1,8 +1,10 @@
 /* takt machine: check a machine file and print it with every key, or pack it for a target. */
 #include "cli/message.h"
-#include "config/configuration_file.h"
+#include "config/data_sheet.h"
 #include "config/machine_file.h"
 #include "config/machine_pack.h"
+#include "serving/serving_options.h"
+#include "session/session.h"
 #include "takt/command.h"
 
 #include <stdio.h>
@@ -27,32 +29,40 @@ static bool check(const struct options *options)
     return false;
 }
 
-/* Those its drives name are there, and good. */
-static bool has_configurations(const struct machine_setup *setup)
+/* The data sheets of its drives are there, and good, and its panel can be served. */
+static bool check_more(const struct machine_setup *setup)
 {
-    struct configuration_files files;
-    const bool good = configuration_files_load(&files, setup);
+    static struct dictionary sheet[DATA_SHEETS_MAX];
+    static struct virtual_drives_config drives;
 
-    configuration_files_free(&files);
-    return good;
+    return data_sheet_set_machine(&drives, setup, sheet) && serving_options_check(setup);
+}
+
+/* With all files that it names, as other commands will read them. */
+static enum command_status print(struct session *session, const struct options *options)
+{
+    if (session_open_machine(session, options) != STATUS_DONE || !check_more(&session->setup))
+        return STATUS_INPUT;
+    if (options->pack.pack)
+        return machine_pack_write(&session->setup, options->output, options->pack.sector);
+    machine_file_write(stdout, &session->setup);
+    return STATUS_DONE;
 }
 
 static enum command_status command_machine_execute(const struct options *options)
 {
-    static struct machine_setup setup;
+    static struct session session;
     struct options given = *options;
+    enum command_status status;
 
     if (!check(options))
         return STATUS_INPUT;
     if (options->pack.unpack)
         return machine_pack_print(options->operand[0]);
     given.machine = options->operand[0];
-    if (!machine_file_load(&setup, &given) || !has_configurations(&setup))
-        return STATUS_INPUT;
-    if (options->pack.pack)
-        return machine_pack_write(&setup, options->output, options->pack.sector);
-    machine_file_write(stdout, &setup);
-    return STATUS_DONE;
+    status = print(&session, &given);
+    session_close(&session);
+    return status;
 }
 
 static const struct option_row rows[] = {

@@ -97,6 +97,26 @@ t.check(status == 0, "nor before a trace", status, err)
 status, _, err = t.run("run", "tool.ngc", "--machine", "sub/m.ini", "--override", "over.txt", "--inject", "faults.inject", "--quiet")
 t.check(status != 2 and "error" not in err.replace("fault", ""), "nor before overrides and faults", status, err)
 
+# What is wrong with a machine as a whole is told at the key that it names, with its value.
+for number, line in enumerate(("home_method = 0", "increments_per_mm = 0", "max_jerk_mm_s3 = 1e-3", "max_acceleration_mm_s2 = 1e-6"), 3):
+    key, _, value = line.partition(" = ")
+    filler = "\n" * (number - 2)
+    status, _, err = t.run("machine", t.write("whole.ini", f"{filler}[axis X]\n  {line}\n"))
+    t.check(status == 2 and err.startswith(f"whole.ini:{number}:{len(key) + 6}: error: axis X: ") and f"({key} = " in err, "an axis", line, err)
+for section, line in (("drive 1", "hard_stop_min_mm = 16"), ("drive 1", "hard_stop_max_mm = -1"), ("machine", "chain = abc"), ("bus", "data_bitrate = 16")):
+    status, _, err = t.run("machine", t.write("whole.ini", f"[axis X]\n[{section}]\n{line}\n"))
+    t.check(status == 2 and err.startswith(f"whole.ini:3:{line.index('=') + 3}: error: ") and f"({line})" in err, "another section", line, err)
+status, _, err = t.run("machine", "--set", "axis.X.home_method=0")
+t.check(status == 2 and "axis X: home_method" in err and "(home_method = 0)" in err, "a key of no file", err)
+
+# takt machine refuses what other commands refuse.
+for section, key in (("machine", "tool_table"), ("machine", "parameter_file"), ("correction", "volume_table"), ("correction", "axis_table_x"), ("drive 1", "eds"), ("drive 1", "dcf")):
+    status, _, err = t.run("machine", t.write("sub/missing.ini", f"[axis X]\n[{section}]\n{key} = nowhere\n"))
+    t.check(status == 2 and "sub/nowhere" in err, "a file that is missing", key, status, err)
+for key in ("listen", "allow"):
+    status, _, err = t.run("machine", t.write("panel.ini", f"[panel]\n{key} = abc\n"))
+    t.check(status == 2 and "panel." + key in err and "abc" in err, "a panel that cannot be served", key, status, err)
+
 # Sections that commands write take the place of a file's own; all else stays as it is.
 t.write("sub/over.ini", "[axis X]\nmax_jerk_mm_s3 = 7000\n[drive 1]\ncoulomb_friction_nm = 0.25\n")
 before, after = (t.run("machine", "sub/m.ini", *more)[1] for more in ([], ["--with", "sub/over.ini"]))

@@ -166,12 +166,12 @@ static void test_limits_below_the_rounding_of_setpoints_are_refused(void)
     setup.machine.cycle_us = 100;
     setup.machine.can_bitrate = 10000000;
     setup.machine.axis[AXIS_Y].max_jerk_mm_s3 = 499;
-    TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "axis Y: its jerk is too low"));
+    TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "axis Y: max_jerk is too low"));
     setup.machine.axis[AXIS_Y].max_jerk_mm_s3 = 501;
     TEST_ASSERT_NULL(machine_setup_check(&setup));
     setup.machine.axis[AXIS_Z].max_acceleration_mm_s2 = 0.24;
     TEST_ASSERT_NOT_NULL(
-        strstr(machine_setup_check(&setup), "axis Z: its acceleration is too low"));
+        strstr(machine_setup_check(&setup), "axis Z: max_acceleration is too low"));
 }
 
 /*

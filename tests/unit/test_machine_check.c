@@ -44,7 +44,7 @@ static void test_positions_fit_the_drives_32_bits(void)
 {
     axis_y()->travel_max_mm = 21475;
     expect(TAKT_ERROR_MACHINE_INCREMENTS,
-           "axis Y: at 100000 increments per length its travel does not fit a drive's 32 bits");
+           "axis Y: at increments_per_mm 100000 its travel does not fit a drive's 32 bits");
     axis_y()->drive_type = MACHINE_DRIVE_STEP;
     axis_y()->increments_per_mm = 1;
     axis_y()->travel_max_mm = 2147484;
@@ -67,10 +67,10 @@ static void test_limits_stand_above_the_rounding_of_setpoints(void)
 {
     axis_y()->max_acceleration_mm_s2 = 0.0024;
     expect(TAKT_ERROR_MACHINE_ACCELERATION,
-           "axis Y: its acceleration is too low for so short a cycle: at least 0.0025");
+           "axis Y: max_acceleration is too low for so short a cycle: at least 0.0025");
     axis_y()->max_jerk_mm_s3 = 0.4;
     expect(TAKT_ERROR_MACHINE_JERK,
-           "axis Y: its jerk is too low for so short a cycle: at least 0.5");
+           "axis Y: max_jerk is too low for so short a cycle: at least 0.5");
 }
 
 static void test_steps_come_no_faster_than_the_drive_takes_them(void)
