@@ -130,6 +130,39 @@ static const char *check_finishing(const struct bore_job *job)
     return NULL;
 }
 
+static const char *check_arcs_of(const struct bore_path *p)
+{
+    for (size_t i = 0; i < p->count; i++) {
+        const struct bore_piece *piece = &p->piece[i];
+        const double x_mm = piece->to_mm[0] - piece->centre_mm[0];
+        const double y_mm = piece->to_mm[1] - piece->centre_mm[1];
+        const double radius_mm = maths_sqrt(x_mm * x_mm + y_mm * y_mm);
+
+        if (piece->kind == BORE_ARC && radius_mm < BORE_RADIUS_MIN_MM)
+            return wrong("an arc of %.2g mm comes of it, and controllers take %g mm at least: a "
+                         "larger hole or a smaller cutter, fewer turns, or lines",
+                         radius_mm, BORE_RADIUS_MIN_MM);
+    }
+    return NULL;
+}
+
+/* Of all passes. The path is made for it: only then is its smallest arc known. */
+static const char *check_arcs(const struct bore_job *job)
+{
+    const char *problem = NULL;
+
+    for (int pass = BORE_ROUGHING; pass <= BORE_FINISHING && problem == NULL; pass++) {
+        struct bore_path path = {0};
+
+        if (!does(job, (enum bore_pass)pass))
+            continue;
+        bore_make_path(job, (enum bore_pass)pass, &path);
+        problem = check_arcs_of(&path);
+        bore_path_free(&path);
+    }
+    return problem;
+}
+
 static const char *check_depth(const struct bore_job *job)
 {
     if (!(job->depth_mm >= 0))
@@ -163,7 +196,8 @@ static const char *check_technology(const struct bore_job *job)
 const char *bore_check(const struct bore_job *job)
 {
     static const char *(*const checks[])(const struct bore_job *job) = {
-        check_hole, check_roughing, check_finishing, check_start, check_depth, check_technology};
+        check_hole,  check_roughing,   check_finishing, check_start,
+        check_depth, check_technology, check_arcs};
     const char *problem = NULL;
 
     for (size_t i = 0; i < sizeof checks / sizeof checks[0] && problem == NULL; i++)

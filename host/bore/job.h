@@ -17,7 +17,13 @@ enum bore_form_kind { BORE_AS_INVOLUTE, BORE_AS_ARCS, BORE_AS_LINES, BORE_AS_HEL
 /* Where the spiral of a pass alone begins; of both passes that of finishing. */
 enum bore_begin { BORE_AT_POINT, BORE_AT_RADIUS, BORE_AT_LENGTH };
 
-#define BORE_TURNS_MAX       10000
+/*
+ * Involutes of programs turn 7957 times at most; the base circle that is written of a small hole is
+ * rounded.
+ */
+#define BORE_TURNS_MAX 7500
+/* Arcs of programs are no smaller. */
+#define BORE_RADIUS_MIN_MM   0.0013
 #define BORE_TOLERANCE_MIN   1e-6
 #define BORE_DEPTH_STEPS_MAX 10000
 

@@ -151,4 +151,14 @@ picture = xml.etree.ElementTree.parse("spirals.svg").getroot()
 t.check(picture.tag.endswith("svg") and len(picture.findall(".//{*}polyline")) == 20, "the picture: four paths, sixteen curves")
 status, out, err = t.run("bore", *SMALL, "--compare", "-o", "-")
 t.check(status == 0 and out.startswith("<svg") and "Archimedean" in err, "a picture on standard output", err)
+
+# What cannot be run is not written: each program that is made is one that takt reads.
+for radius in (0.00005, 0.001, 0.0014, 0.02, 8):
+    for turns in (1, 40, 700, 7500, 7501):
+        for form in ("involute", "arcs", "lines") if turns < 1000 else ("involute",):
+            words = "--pass", "finishing", "--hole", repr(20 + 2 * radius), "--cutter", "20", "--turns", str(turns), "--as", form
+            status, out, err = t.run("bore", *words, "-o", "made.ngc")
+            t.check(status == 0 or status == 2 and ("of it, and controllers take" in err or "--turns 7501" in err), "a hole is refused for a reason", words, err)
+            t.check(status != 0 or t.run("check", "made.ngc")[0] == 0, "a program can be read", words)
+            t.check(status == 0 or radius < 0.0014 or turns > 7500 or form == "arcs", "and most can be made", words, err)
 t.finish()
