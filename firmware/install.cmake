@@ -4,7 +4,6 @@
 #     target_link_libraries(machine PRIVATE takt::port)      and #include <takt.h>
 #
 # Installed from a preset of the processor the image is for: host, m4f, m7, stm32f405, stm32h743. host/examples/embedding has examples.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 # Sizes that this build fixes, so that whoever includes the headers sees the structs that were built.
@@ -53,12 +52,24 @@ if(sizes)
   list(TRANSFORM sizes PREPEND " -D" OUTPUT_VARIABLE definitions)
 endif()
 string(REPLACE ";" "" definitions "${definitions}")
-file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/takt.pc "prefix=\${pcfiledir}/${up}
+# Folders relative to the prefix make a package that may be moved.
+if(IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
+  set(prefix ${CMAKE_INSTALL_PREFIX})
+else()
+  file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  set(prefix "\${pcfiledir}/${up}")
+endif()
+foreach(folder LIBDIR INCLUDEDIR)
+  set(${folder} ${CMAKE_INSTALL_${folder}})
+  if(NOT IS_ABSOLUTE ${CMAKE_INSTALL_${folder}})
+    string(PREPEND ${folder} "\${prefix}/")
+  endif()
+endforeach()
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/takt.pc "prefix=${prefix}
 Name: takt
 Description: ${PROJECT_DESCRIPTION}
 Version: ${PROJECT_VERSION}
-Cflags: -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/takt${definitions}
-Libs: -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/takt -Wl,--start-group${archives} -Wl,--end-group
+Cflags: -I${INCLUDEDIR}/takt${definitions}
+Libs: -L${LIBDIR}/takt -Wl,--start-group${archives} -Wl,--end-group
 ")
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

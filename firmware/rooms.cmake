@@ -5,6 +5,8 @@
 # link to itself; a room that is not linked cannot be included, so data cannot flow backwards by accident
 # (tests/unit/rooms proves it).
 
+include(GNUInstallDirs)
+
 # Flags of every target. -ffp-contract=off: a fused multiply-add rounds once where two operations round twice,
 # so it would make the last bit depend on the processor.
 add_library(takt_flags INTERFACE)
@@ -20,6 +22,11 @@ if(TAKT_WARNINGS)
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion -Wundef
     -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wcast-qual -Wpointer-arith
     -Wformat=2 -Wvla -Wswitch-enum -Werror)
+  set(TAKT_SYSTEM "")
+else()
+  # The warnings of a project that takt is a part of are about its own sources.
+  target_compile_options(takt_flags INTERFACE -w)
+  set(TAKT_SYSTEM SYSTEM)
 endif()
 if(TAKT_SANITIZE)
   target_compile_options(takt_flags INTERFACE
@@ -38,7 +45,7 @@ function(takt_room name)
   list(TRANSFORM ROOM_AFTER PREPEND takt_ OUTPUT_VARIABLE before)
   if(ROOM_SOURCES)
     add_library(takt_${name} STATIC ${ROOM_SOURCES})
-    target_include_directories(takt_${name} PUBLIC $<BUILD_INTERFACE:${doors}> $<INSTALL_INTERFACE:include/takt>)
+    target_include_directories(takt_${name} ${TAKT_SYSTEM} PUBLIC $<BUILD_INTERFACE:${doors}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/takt>)
     target_link_libraries(takt_${name} PUBLIC ${before} PRIVATE takt_flags)
     foreach(source IN LISTS ROOM_SOURCES)
       if(${name}/${source} IN_LIST TAKT_FAST_SOURCES)
@@ -47,7 +54,7 @@ function(takt_room name)
     endforeach()
   else()
     add_library(takt_${name} INTERFACE)
-    target_include_directories(takt_${name} INTERFACE $<BUILD_INTERFACE:${doors}> $<INSTALL_INTERFACE:include/takt>)
+    target_include_directories(takt_${name} ${TAKT_SYSTEM} INTERFACE $<BUILD_INTERFACE:${doors}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/takt>)
     target_link_libraries(takt_${name} INTERFACE ${before})
   endif()
   add_library(takt::${name} ALIAS takt_${name})

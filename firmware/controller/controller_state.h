@@ -2,6 +2,8 @@
  * Inside the controller: public only so that the caller can own the memory. Read controller.h
  * instead.
  */
+#include "controller/controller.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_CONTROLLER_CONTROLLER_STATE_H
 #define TAKT_CONTROLLER_CONTROLLER_STATE_H
 

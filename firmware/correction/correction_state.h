@@ -1,6 +1,8 @@
 /*
  * Inside correction: public only so that the caller can own the memory. Read correction.h instead.
  */
+#include "correction/correction.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_CORRECTION_CORRECTION_STATE_H
 #define TAKT_CORRECTION_CORRECTION_STATE_H
 

@@ -1,6 +1,8 @@
 /*
  * Memory of the drives: only for sizeof. Nobody outside this room reads or writes a field.
  */
+#include "drive/drives.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_DRIVE_DRIVES_STATE_H
 #define TAKT_DRIVE_DRIVES_STATE_H
 

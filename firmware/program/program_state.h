@@ -2,6 +2,8 @@
  * What struct program consists of. Callers own the memory and touch nothing in it; included by
  * program.h alone.
  */
+#include "program/program.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_PROGRAM_STATE_H
 #define TAKT_PROGRAM_STATE_H
 

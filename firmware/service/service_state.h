@@ -1,6 +1,8 @@
 /*
  * Inside the service: public only so that the caller can own the memory. Read service.h instead.
  */
+#include "service/service.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_SERVICE_SERVICE_STATE_H
 #define TAKT_SERVICE_SERVICE_STATE_H
 

@@ -1,6 +1,8 @@
 /*
  * Memory of a drive: only for sizeof, and for the sources of this room.
  */
+#include "servo/servo.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_SERVO_SERVO_STATE_H
 #define TAKT_SERVO_SERVO_STATE_H
 

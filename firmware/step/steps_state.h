@@ -1,6 +1,8 @@
 /*
  * Memory of the step drives: public only so that the caller can own it. Read steps.h instead.
  */
+#include "step/steps.h" /* before the guard: that one includes this in its place */
+
 #ifndef TAKT_STEP_STEPS_STATE_H
 #define TAKT_STEP_STEPS_STATE_H
 
