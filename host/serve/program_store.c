@@ -153,8 +153,9 @@ static bool write_aside(struct program_store *store, const struct stored_text *t
 
 bool program_store_can_keep(struct program_store *store)
 {
+    const struct stored_text nothing = {.size = 0};
     struct stat status;
-    const bool good = write_aside(store, "", 0);
+    const bool good = write_aside(store, &nothing);
 
     forget_file(store);
     if (!good || store->path == NULL || stat(store->path, &status) != 0 || !S_ISDIR(status.st_mode))
