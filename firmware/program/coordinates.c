@@ -354,8 +354,18 @@ static bool is_straight(const struct program *p)
     return words_has_step(p, STEP_MOTION) && p->words.code[STEP_MOTION]->run == takt_straight_move;
 }
 
+/* G0 or G1 is in effect, but the line has nothing that would go on with it. */
+static bool misses_axes(const struct program *p)
+{
+    return !words_has_step(p, STEP_MOTION) && p->modes.motion != NULL &&
+           p->modes.motion->run == takt_straight_move;
+}
+
 bool takt_coordinates_use_machine(struct program *p, const struct program_code *code)
 {
+    if (!p->modes.incremental && misses_axes(p)) {
+        return takt_report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
+    }
     if (p->modes.incremental || !is_straight(p)) {
         return takt_report_error_code(p, TAKT_ERROR_MACHINE_COORDINATES, code->step, 0.0);
     }

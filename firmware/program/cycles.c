@@ -265,7 +265,7 @@ static bool check_use(struct program *p, const struct program_code *code)
         return takt_report_error_code(p, TAKT_ERROR_FEED_MODE_UNFIT, code->step, 0.0);
     }
     return !words_has(p, 'l') ||
-           takt_words_whole(p, 'l', 1.0, PROGRAM_REPEATS_MAX, &p->cycle.repeats);
+           takt_words_whole(p, 'l', 0.0, PROGRAM_REPEATS_MAX, &p->cycle.repeats);
 }
 
 bool takt_cycles_start(struct program *p, const struct program_code *code)
@@ -284,6 +284,10 @@ bool takt_cycles_start(struct program *p, const struct program_code *code)
     takt_coordinates_work_of(p, &p->modes.at, &work);
     set_holes(p, c, &work);
     set_heights(p, c, &work);
+    if (c->repeats == 0) { /* only its words are kept */
+        p->modes.motion = code;
+        return true;
+    }
     if (!check_size(p, code, c) || !prepare_feed(p, code, c) || !rise(p, c, &work)) {
         return false;
     }
