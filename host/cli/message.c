@@ -34,8 +34,16 @@ void message_set_command(const char *name)
     (void)snprintf(message_command, sizeof message_command, "takt %s", name);
 }
 
+static _Thread_local unsigned message_warnings;
+
+unsigned message_count_warnings(void)
+{
+    return message_warnings;
+}
+
 static void message_tell(const struct message *m)
 {
+    message_warnings += strcmp(m->kind, "warning") == 0 ? 1U : 0U;
     if (message_listener.hear != NULL)
         message_listener.hear(message_listener.listener, m);
     else if (m->file == NULL)

@@ -25,6 +25,9 @@ struct message {
 /* From now on messages of this thread go to hear instead of stderr; NULL: to stderr again. */
 void message_listen(void (*hear)(void *listener, const struct message *m), void *listener);
 
+/* Warnings of this thread so far, heard or printed. */
+unsigned message_count_warnings(void);
+
 /* The sub-command, for messages about the command line. */
 void message_set_command(const char *name);
 

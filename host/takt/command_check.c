@@ -1,4 +1,5 @@
 /* takt check: find all errors of a part program without moving anything. */
+#include "cli/message.h"
 #include "session/session.h"
 #include "takt/command.h"
 
@@ -21,7 +22,9 @@ static enum command_status command_check_execute(const struct options *options)
 {
     static struct session session;
     struct session_totals totals;
+    const unsigned before = message_count_warnings();
     enum command_status status = session_open(&session, options);
+    const unsigned of_opening = message_count_warnings() - before;
 
     if (status == STATUS_DONE) {
         status = session_check(&session, CHECK_ERRORS_MAX, &totals);
@@ -29,6 +32,7 @@ static enum command_status command_check_execute(const struct options *options)
             (void)fprintf(stderr, "%s: %u error%s%s\n", session.program.name, totals.errors,
                           totals.errors == 1 ? "" : "s",
                           totals.errors == CHECK_ERRORS_MAX ? "; the rest was not read" : "");
+        totals.warnings += of_opening;
     }
     if (status == STATUS_DONE && !options->quiet)
         print_found(&session, &totals);
