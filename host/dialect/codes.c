@@ -21,17 +21,6 @@ void codes_drop(struct translator *t, struct line_word *w)
     }
 }
 
-const struct dialect_code *codes_find(const struct dialect_codes *codes, const struct line_word *w)
-{
-    const int number = declared_is_letter(w) ? 0 : line_code(w);
-
-    for (unsigned i = 0; i < codes->count && number >= 0; i++) {
-        if (codes->code[i].letter == w->letter && codes->code[i].number_x10 == number)
-            return &codes->code[i];
-    }
-    return NULL;
-}
-
 /* False: nothing is left of the line. */
 static bool use_difference(struct translator *t, struct line_word *w, const struct difference *row)
 {

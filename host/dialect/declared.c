@@ -4,11 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-bool declared_is_letter(const struct line_word *w)
-{
-    return w->kind == WORD_VALUE && strchr("uvw", w->letter) != NULL;
-}
-
 /*
  * A letter whose axis bears another one. U V W are lengths: in inches where X is, while A B C count
  * the same in all units.
@@ -83,7 +78,7 @@ void declared_use(struct translator *t, struct line_word *w, const struct dialec
         use_axis(t, w, code);
         return;
     }
-    if (declared_is_letter(w))
+    if (codes_is_letter(w))
         line_blank(&t->line, w);
     else
         codes_drop(t, w);

@@ -7,6 +7,7 @@
 #include "dialect/dialect.h"
 #include "dialect/difference.h"
 #include "dialect/translate.h"
+#include "lathe/lathe.h"
 #include "siemens/siemens.h"
 #include "words/line.h"
 
@@ -111,10 +112,17 @@ static bool look_at_line(struct look *k)
                         (c == '#' && (text[1] == ' ' || contains(text + 1, 1, "a") ||
                                       (line_lower(text[1]) >= 'a' && line_lower(text[1]) <= 'z')));
 
+    /* a simulator's orders begin so too, behind a program's number, which no sender knows */
+    if (c == '$' && k->d->numbered) {
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), NULL);
+        return true;
+    }
     if (c == '$' || (strchr("?!~", c) != NULL && c != '\0') || remark) {
         note(k, BIT(DIALECT_GRBL), NULL);
         return true;
     }
+    k->d->numbered =
+        k->d->numbered || (line_lower(c) == 'o' && k->line.words > 0 && k->line.word[0].is_number);
     if (line_is_directive(&k->line)) {
         note(k, BIT(DIALECT_FANUC), NULL);
         return true;
@@ -150,6 +158,8 @@ static void look_at_code(struct look *k, struct line_word *w)
             note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), w);
     }
     if (w->letter == 'g' && (number == 120 || number == 130) && line_find(&k->line, 'i', 0) != NULL)
+        note(k, BIT(DIALECT_HAAS), w);
+    if (w->letter == 'm' && number == 970 && line_find(&k->line, 'p', 0) != NULL)
         note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && (number == 1540 || number == 2340 || number == 2540))
         note(k, BIT(DIALECT_HAAS), w);

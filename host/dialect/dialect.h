@@ -48,6 +48,7 @@ struct dialect_detector {
     bool ended_cycle;   /* and the last one was G80 */
     uint32_t bare_line; /* axis words before that; 0: none */
     char bare[32];
+    bool numbered;  /* it has a number, O1000 */
     bool linuxcnc;  /* it has what only LinuxCNC knows */
     unsigned named; /* bits: dialects its comments name, */
     unsigned alone; /* and those of which it has what no other dialect has */

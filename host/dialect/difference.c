@@ -82,7 +82,6 @@ static const struct difference rows[] = {
     CODE(SIEMENS, 'm', 170, DIFFERENCE_REPLACE, "M2"),
     /* printers: what is left is the way of the nozzle */
     CODES(MARLIN, 'g', 290, 300, DIFFERENCE_LINE, "probing of the bed"),
-    CODE(MARLIN, 'g', 50, DIFFERENCE_LINE, "spline"),
     CODES(MARLIN, 'g', 100, 110, DIFFERENCE_LINE, "filament"),
     CODE(MARLIN, 'g', 800, DIFFERENCE_LINE, "levelling of the bed"),
     CODES(MARLIN, 'm', 170, 180, DIFFERENCE_LINE, "motors"),

@@ -17,26 +17,6 @@
  */
 #define WHOLE_MIN 100.0
 
-static struct line_word *find_cycle(struct line *l)
-{
-    for (unsigned code = 810; code <= 890; code += 10) {
-        struct line_word *w = line_find_code(l, 'g', code);
-
-        if (w != NULL)
-            return w;
-    }
-    return line_find_code(l, 'g', 730);
-}
-
-static bool ends_series(struct line *l)
-{
-    for (unsigned code = 0; code <= 30; code += 10) {
-        if (line_find_code(l, 'g', code) != NULL)
-            return true;
-    }
-    return line_find_code(l, 'g', 800) != NULL;
-}
-
 /* Fagor's G81, where K would be a dwell and has another unit. */
 static bool has_two_heights(struct line *l)
 {
@@ -129,21 +109,26 @@ static void give_height(struct translator *t)
 void holes_translate(struct translator *t)
 {
     struct line *l = &t->line;
-    const bool begins = find_cycle(l) != NULL;
+    const bool begins = series_find_cycle(l) != NULL;
+    bool first;
 
+    series_follow_programs(t);
+    first = begins && !t->has_height;
     if (begins)
         t->has_two_heights = has_two_heights(l);
-    if (t->has_two_heights && !ends_series(l))
+    if (t->has_two_heights && !series_ends(l))
         rename_heights(l);
+    if (first)
+        give_height(t);
     if (begins) {
-        if (!t->has_height)
-            give_height(t);
         t->has_height = true;
-    } else if (ends_series(l)) {
+    } else if (series_ends(l)) {
         if (t->bores_along && line_find_code(l, 'g', 170) == NULL)
             (void)line_append(l, "G18");
         t->has_height = t->has_two_heights = t->bores_along = t->has_level = false;
+        t->cycle = 0;
     }
     if (t->has_level)
         write_height(l);
+    series_translate(t, first);
 }

@@ -21,6 +21,13 @@ void motion_follow_modes(struct translator *t)
         t->incremental = true;
 }
 
+const char *motion_distance_mode(struct line *l)
+{
+    if (line_find_code(l, 'g', 900) != NULL)
+        return "0";
+    return line_find_code(l, 'g', 910) != NULL ? "1" : "#<_incremental>";
+}
+
 /*
  * Behind a cycle G0 or G1 is in effect again, as it was before it. What is executed before is the
  * text before, as long as there are no jumps and calls.
@@ -116,13 +123,25 @@ static void drop_motion(struct translator *t)
     }
 }
 
+/* G30 P2 is the reference that G30 goes to without P; there are no others. */
+static void drop_second(struct translator *t)
+{
+    struct line_word *p = line_find(&t->line, 'p', 0);
+
+    if (p != NULL && p->is_number && p->value == 2.0 && translate_is(t, TRANSLATE_INDUSTRY))
+        line_blank(&t->line, p);
+}
+
 void motion_translate_reference(struct translator *t)
 {
     struct line *l = &t->line;
+    const struct line_word *second = line_find_code(l, 'g', 300);
     bool relative = false;
 
-    if (line_find_code(l, 'g', 280) == NULL && line_find_code(l, 'g', 300) == NULL)
+    if (line_find_code(l, 'g', 280) == NULL && second == NULL)
         return;
+    if (second != NULL)
+        drop_second(t);
     for (unsigned i = 0; i < l->words; i++) {
         if (make_bare(t, &l->word[i]) ||
             (translate_is(t, TRANSLATE_MACROS) && make_distance(l, &l->word[i])))

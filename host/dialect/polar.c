@@ -46,14 +46,6 @@ static void rename_words(struct translator *t)
     (void)line_read(l, l->text, l->length);
 }
 
-/* 1 with G91, as text: of this line, or of what comes before it. */
-static const char *distance_mode(struct line *l)
-{
-    if (line_find_code(l, 'g', 900) != NULL)
-        return "0";
-    return line_find_code(l, 'g', 910) != NULL ? "1" : "#<_incremental>";
-}
-
 static void write_value(const struct line *l, const struct line_word *w, const char *here,
                         const char *mode, char text[TEXT_MAX])
 {
@@ -87,7 +79,7 @@ void polar_translate(struct translator *t)
     struct line_word *angle = line_find(l, '^', 0);
     char text[2][TEXT_MAX];
     char words[TEXT_MAX];
-    const char *mode = distance_mode(l);
+    const char *mode = motion_distance_mode(l);
 
     if (radius == NULL && angle == NULL)
         return;

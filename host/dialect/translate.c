@@ -1,5 +1,6 @@
 #include "dialect/translate.h"
 
+#include "lathe/lathe.h"
 #include "siemens/siemens.h"
 #include "translation/jumps.h"
 
@@ -120,20 +121,63 @@ static void translate_numbers(struct translator *t)
     }
 }
 
-/* #1 = #2 + 3 in brackets. */
-static void bracket_assignment(struct line *l)
+static bool is_assignment(const struct line_word *w)
 {
-    const struct line_word *w = l->words > 0 ? &l->word[0] : NULL;
+    return w->kind == WORD_ASSIGNED && w->value_begin > 0;
+}
+
+/* #1 = #2 + 3, up to the next one or a comment, in brackets. False: there is none from there on. */
+static bool bracket_next(struct line *l, unsigned from)
+{
     char text[LINE_MAX_BYTES + 8];
+    unsigned next;
 
-    if (w == NULL || !line_is_calculation(l, w))
-        return;
-    const size_t end = w->value_begin + strcspn(&l->text[w->value_begin], "(;");
-    const int length =
-        snprintf(text, sizeof text, "%.*s[%.*s]%s", (int)w->value_begin, l->text,
-                 (int)(end - w->value_begin), &l->text[w->value_begin], &l->text[end]);
+    while (from < l->words && !line_is_calculation(l, &l->word[from]))
+        from++;
+    if (from >= l->words)
+        return false;
+    for (next = from + 1;
+         next < l->words && l->word[next].kind != WORD_COMMENT && !is_assignment(&l->word[next]);)
+        next++;
+    const size_t begin = l->word[from].value_begin;
+    const size_t end = next < l->words ? l->word[next].begin : l->length;
+    const int length = snprintf(text, sizeof text, "%.*s[%.*s]%s", (int)begin, l->text,
+                                (int)(end - begin), &l->text[begin], &l->text[end]);
 
-    (void)line_read(l, text, (size_t)length);
+    return line_read(l, text, (size_t)length);
+}
+
+/* AND, OR and XOR of Fanuc work on bits, here on what is true: the same of conditions alone. */
+static void refuse_bits(struct translator *t, const struct line_word *w)
+{
+    static const char *const comparisons[] = {"eq", "ne", "gt", "ge", "lt", "le"};
+    const char *text = &t->line.text[w->value_begin];
+    const char *combines = NULL;
+
+    for (const char *c = text; c < &t->line.text[w->end]; c++) {
+        if (line_begins(c, "and") || line_begins(c, "or"))
+            combines = c;
+        for (size_t i = 0; i < sizeof comparisons / sizeof comparisons[0]; i++) {
+            if (line_begins(c, comparisons[i]))
+                return;
+        }
+    }
+    if (combines != NULL)
+        translate_wrong(
+            t, w, "'%.*s': AND, OR and XOR of bits are not supported, of conditions are",
+            (int)(w->end - w->begin) < 60 ? (int)(w->end - w->begin) : 60, &t->line.text[w->begin]);
+}
+
+static void translate_assignments(struct translator *t)
+{
+    struct line *l = &t->line;
+
+    for (unsigned i = 0; i < TRANSLATE_LINES_MAX && bracket_next(l, 0); i++)
+        ;
+    for (unsigned i = 0; i < l->words; i++) {
+        if (is_assignment(&l->word[i]))
+            refuse_bits(t, &l->word[i]);
+    }
 }
 
 /* M6 of a program that never says which tool: somebody changes it. */
@@ -213,7 +257,7 @@ static void translate_dwell(struct translator *t)
     struct line_word *p = line_find(l, 'p', 0);
     const bool dwells = line_find_code(l, 'g', 40) != NULL;
 
-    if (!dwells && line_find_code(l, 'g', 820) == NULL && line_find_code(l, 'g', 890) == NULL)
+    if (!dwells && series_find_cycle(l) == NULL)
         return;
     for (unsigned i = 0; i < l->words && dwells && p == NULL; i++) {
         struct line_word *w = &l->word[i];
@@ -259,13 +303,18 @@ static void translate_foreign(struct translator *t)
     names_begin(t);
     names_translate(t);
     if (translate_is(t, TRANSLATE_MACROS)) {
-        bracket_assignment(&t->line);
-        if (t->survey.lathe)
+        translate_assignments(t);
+        if (t->survey.lathe) {
             turning_translate(t);
+            passes_translate(t);
+            lathe_translate_increments(t);
+        }
         pocket_translate(t);
         if (t->survey.lathe)
             threads_translate(t);
+        calls_translate(t);
         flow_translate(t);
+        series_translate_fine_boring(t);
     }
     registers_translate_unit(t);
     codes_translate(t);
@@ -291,14 +340,20 @@ static void translate_foreign(struct translator *t)
     motion_translate(t);
 }
 
+static bool has_slash(const struct line *l)
+{
+    return l->words > 0 && l->word[0].letter == '/';
+}
+
 /* All lines that one has become, the first without DIALECT_GOES_ON. */
 static void put_out(struct translator *t, unsigned jumps)
 {
     struct dialect_text *out = &t->result->text;
-    struct dialect_text all = {0};
+    const bool blank = line_is_blank(&t->line);
+    struct dialect_text all = {.slash = t->before.slash && !blank && !has_slash(&t->line)};
 
     output_add(&all, t->before.bytes, t->before.length);
-    if (!line_is_blank(&t->line) || t->before.length + t->behind.length == 0)
+    if (!blank || t->before.length + t->behind.length == 0)
         translate_add(&all, "%s", t->line.text);
     for (unsigned i = jumps; i < t->jumps; i++)
         t->jump[i].patch += out->length + all.length - 1;
@@ -326,6 +381,7 @@ static void translate_line(void *translator, const char *bytes, size_t length)
         return;
     }
     jumps_note_label(t, t->result->text.length);
+    t->before.slash = t->behind.slash = has_slash(&t->line);
     globals_begin(t);
     values_translate(t);
     polar_translate(t);
@@ -363,8 +419,11 @@ static void survey_line(void *translator, const char *bytes, size_t length)
 
     if (!line_read(l, bytes, length))
         return;
+    calls_survey(&t->survey, l);
     flow_survey(&t->survey, l);
     names_survey(&t->survey, l);
+    passes_survey(&t->survey, l);
+    series_survey(&t->survey, l);
     t->survey.rotary = t->survey.rotary || upright_turns(l);
     t->survey.whole = t->survey.whole || turning_is_whole(l);
     t->survey.lathe = t->survey.lathe || turning_tells(l) ||
@@ -418,6 +477,8 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     each_line(bytes, length, translate_line, t);
     if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_finish(t);
+    if (translate_is(t, TRANSLATE_MACROS))
+        flow_end_program(t);
     jumps_finish(t);
     dialect_text_free(&t->before);
     dialect_text_free(&t->behind);

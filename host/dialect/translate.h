@@ -39,37 +39,32 @@ void motion_translate(struct translator *t);
 
 /* What becomes of a word by what the machine file declares it as. */
 void declared_use(struct translator *t, struct line_word *w, const struct dialect_code *code);
-/* U, V or W. */
-bool declared_is_letter(const struct line_word *w);
 
 /* Takes a code and its own words out of the line. */
 void codes_drop(struct translator *t, struct line_word *w);
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
-/* What the machine file declares a word as; NULL: nothing. */
-const struct dialect_code *codes_find(const struct dialect_codes *codes, const struct line_word *w);
 
-/* G70, G71, G72, G74, G75 and G76 of lathes. */
-void turning_translate(struct translator *t);
-/* Distances of a cycle that are whole thousandths, since nothing is that large. */
-bool turning_is_whole(struct line *l);
-/* Only programs for lathes have such a line. */
-bool turning_tells(struct line *l);
+/* 1 with G91, as text: of this line, or of what comes before it. */
+const char *motion_distance_mode(struct line *l);
+
+/* A cycle of drilling or boring; what a series of them ends with. */
+struct line_word *series_find_cycle(struct line *l);
+bool series_ends(struct line *l);
+void series_survey(struct survey *s, struct line *l);
+/* In a program that is called in a series it goes on. */
+void series_follow_programs(struct translator *t);
+void series_translate_fine_boring(struct translator *t);
+/* What holes keep from those before; first: the line begins a series. */
+void series_translate(struct translator *t, bool first);
 
 /* Cycles without R, of lathes, and of Fagor. */
 void holes_translate(struct translator *t);
-/* Arcs of lathes that have no centre. */
-void arcs_translate(struct translator *t);
 /* #<_name> that the machine file knows. */
 void globals_begin(struct translator *t);
-/* Diameters, feeds and turret of lathes. */
-void lathe_translate(struct translator *t);
 /* Macros of printers; what is for extruders. */
 void printer_leave_macro(struct translator *t);
 void printer_translate(struct translator *t);
-/* G32. */
-void threads_translate(struct translator *t);
-
 /* Has a line a rotary axis? */
 bool upright_turns(struct line *l);
 /* G43.4, G53.1 and G68.2 of a program that has none. */
@@ -87,8 +82,13 @@ void registers_translate_unit(struct translator *t);
 /* G12 and G13. */
 void pocket_translate(struct translator *t);
 
-/* WHILE, DO, END, IF, GOTO, G65, G66 and what goes with them. */
-void flow_survey(struct survey *s, struct line *l);
+/* WHILE, DO, END, IF and GOTO. */
+void flow_survey(struct survey *s, const struct line *l);
 void flow_translate(struct translator *t);
+/* All loops of a program end in it. */
+void flow_end_program(struct translator *t);
+/* O1000, G65, G66, M97, M98 and M99. */
+void calls_survey(struct survey *s, struct line *l);
+void calls_translate(struct translator *t);
 
 #endif

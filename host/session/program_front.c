@@ -269,7 +269,9 @@ static bool translate(const struct junction *j, const char *called, enum dialect
     }
     if (!j->front->quiet)
         tell_notes(found->name, dialect, &result);
-    return true;
+    if (result.wrong_line != 0)
+        message_error(found->name, result.wrong_line, result.wrong_column, "%s", result.wrong);
+    return result.wrong_line == 0;
 }
 
 /* The program has ended before what follows; nothing of it is executed on the way. */

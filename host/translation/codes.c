@@ -168,3 +168,19 @@ const char *dialect_value_set(struct dialect_codes *codes, const char *name, con
     (void)snprintf(codes->value[i].name, sizeof codes->value[i].name, "%s", name);
     return NULL;
 }
+
+bool codes_is_letter(const struct line_word *w)
+{
+    return w->kind == WORD_VALUE && strchr("uvw", w->letter) != NULL;
+}
+
+const struct dialect_code *codes_find(const struct dialect_codes *codes, const struct line_word *w)
+{
+    const int number = codes_is_letter(w) ? 0 : line_code(w);
+
+    for (unsigned i = 0; i < codes->count && number >= 0; i++) {
+        if (codes->code[i].letter == w->letter && codes->code[i].number_x10 == number)
+            return &codes->code[i];
+    }
+    return NULL;
+}

@@ -2,6 +2,9 @@
 #ifndef TAKT_HOST_TRANSLATION_CODES_H
 #define TAKT_HOST_TRANSLATION_CODES_H
 
+#include "words/line.h"
+
+#include <stdbool.h>
 #include <stdint.h>
 
 /* What becomes of a code that the machine file declares. */
@@ -55,6 +58,11 @@ const char *dialect_value_set(struct dialect_codes *codes, const char *name, con
  * and "A" or "ignore"; "R" and "height" or "distance". NULL: it is right; else what is wrong.
  */
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value);
+
+/* U, V or W, which may be letters of other axes. */
+bool codes_is_letter(const struct line_word *w);
+/* What the machine file declares a word as; NULL: nothing. */
+const struct dialect_code *codes_find(const struct dialect_codes *codes, const struct line_word *w);
 
 /* "M31 = ignore", as in a machine file. */
 #define DIALECT_CODE_TEXT_MAX 96

@@ -4,12 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define EMPTY_JUMP "o00000000 goto [00000000] [00]"
+#define ANY_LABEL  98000000U
+
 void jumps_note_label(struct translator *t, size_t offset)
 {
-    const struct line_word *w = t->line.words > 0 ? &t->line.word[0] : NULL;
+    const struct line_word *w = line_number(&t->line);
 
     t->line_offset = offset;
-    if (t->survey.jumps && w != NULL && w->letter == 'n' && w->is_number)
+    if (t->survey.jumps && w != NULL)
         jumps_add_label(t, line_whole(w->value));
 }
 
@@ -29,16 +32,42 @@ void jumps_add_label(struct translator *t, uint32_t number)
 }
 
 /* Where it is filled in is a place in behind, until the line is put out. */
-void jumps_go_to(struct translator *t, uint32_t number, enum jump_way way)
+static void put_jump(struct translator *t, uint32_t number, enum jump_way way, bool possible)
 {
     if (t->jumps < TRANSLATE_JUMPS_MAX)
         t->jump[t->jumps++] = (struct jump){.way = way,
                                             .program = t->program,
                                             .number = number,
                                             .line = t->number,
-                                            .patch = t->behind.length + 1,
-                                            .depth = t->depth};
-    translate_add(&t->behind, "o00000000 goto [00000000] [00]");
+                                            .patch = t->behind.length + (t->behind.slash ? 2 : 1),
+                                            .depth = t->depth,
+                                            .possible = possible};
+    else
+        translate_wrong(t, NULL, "GOTO: a program may jump from %u places", TRANSLATE_JUMPS_MAX);
+    translate_add(&t->behind, "%s", EMPTY_JUMP);
+}
+
+void jumps_go_to(struct translator *t, uint32_t number, enum jump_way way)
+{
+    put_jump(t, number, way, false);
+}
+
+void jumps_go_to_any(struct translator *t, const char *expression)
+{
+    const struct survey *s = &t->survey;
+    const unsigned label = ANY_LABEL + t->number % 1000000U;
+
+    if (s->targets > TRANSLATE_TARGETS_MAX || t->jumps + s->targets > TRANSLATE_JUMPS_MAX) {
+        translate_wrong(t, NULL, "GOTO%.40s: more lines have an N than it can choose from",
+                        expression);
+        return;
+    }
+    for (unsigned i = 0; i < s->targets; i++) {
+        translate_add(&t->behind, "o%u if [[%s] EQ %u]", label, expression, (unsigned)s->target[i]);
+        put_jump(t, s->target[i], JUMP_ANYWHERE, true);
+        translate_add(&t->behind, "o%u endif", label);
+    }
+    translate_add(&t->behind, "(abort,GOTO: no line has this N)");
 }
 
 /* One further back takes the place of what has been found before it. */
@@ -76,11 +105,13 @@ void jumps_finish(struct translator *t)
         char text[64];
         int length;
 
-        if (label == NULL || label->offset > 99999999U)
-            length = snprintf(text, sizeof text, "o00000000 goto %15s", "");
-        else
+        if (label != NULL && label->offset <= 99999999U)
             length = snprintf(text, sizeof text, "o%08u goto [%08u] [%02u]",
                               (unsigned)label->offset, (unsigned)label->line, label->depth);
+        else if (j->possible)
+            length = snprintf(text, sizeof text, "%*s", (int)sizeof EMPTY_JUMP - 1, "");
+        else
+            length = snprintf(text, sizeof text, "o00000000 goto %15s", "");
         memcpy(t->result->text.bytes + j->patch, text, (size_t)length);
     }
 }

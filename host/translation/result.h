@@ -17,6 +17,7 @@ struct dialect_text {
     char *bytes; /* NULL: empty */
     size_t length, room;
     bool failed; /* out of memory */
+    bool slash;  /* lines that are added may be left out, as the one that they come of */
 };
 
 void dialect_text_free(struct dialect_text *t);
@@ -33,6 +34,9 @@ struct dialect_result {
     struct dialect_text text;
     struct dialect_note note[DIALECT_NOTES_MAX];
     unsigned notes;
+    /* the first thing that cannot be translated; line 0: there is none */
+    uint32_t wrong_line, wrong_column;
+    char wrong[128];
 };
 
 void output_add(struct dialect_text *t, const char *bytes, size_t length);

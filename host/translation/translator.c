@@ -13,7 +13,7 @@
 
 void translate_add(struct dialect_text *t, const char *format, ...)
 {
-    static const char goes_on = DIALECT_GOES_ON;
+    static const char begin[] = {DIALECT_GOES_ON, '/'};
     char text[LINE_TEXT_MAX];
     va_list arguments;
 
@@ -21,7 +21,7 @@ void translate_add(struct dialect_text *t, const char *format, ...)
     const int length = vsnprintf(text, sizeof text, format, arguments);
 
     va_end(arguments);
-    output_add(t, &goes_on, 1);
+    output_add(t, begin, t->slash ? 2 : 1);
     output_add(t, text, length < (int)sizeof text ? (size_t)length : sizeof text - 1);
     output_add(t, "\n", 1);
 }
@@ -39,6 +39,20 @@ void translate_note(struct translator *t, const struct line_word *w, const char 
     }
     if (r->notes < DIALECT_NOTES_MAX)
         r->note[r->notes++] = note;
+}
+
+void translate_wrong(struct translator *t, const struct line_word *w, const char *format, ...)
+{
+    struct dialect_result *r = t->result;
+    va_list arguments;
+
+    if (r->wrong_line != 0)
+        return;
+    r->wrong_line = t->number;
+    r->wrong_column = w != NULL ? w->begin + 1U : 1;
+    va_start(arguments, format);
+    (void)vsnprintf(r->wrong, sizeof r->wrong, format, arguments);
+    va_end(arguments);
 }
 
 void translate_message(struct translator *t, const char *text, size_t length)

@@ -16,9 +16,10 @@
 #define TRANSLATE_NUMBERS_MAX  64
 #define TRANSLATE_NAMES_MAX    1024
 /* More than the interpreter has in one another. */
-#define TRANSLATE_BLOCKS_MAX 64
+#define TRANSLATE_BLOCKS_MAX  64
+#define TRANSLATE_TARGETS_MAX 512
 /* A call with all of its arguments. */
-#define TRANSLATE_CALL_MAX 1408
+#define TRANSLATE_CALL_MAX 1664
 
 /* A line with a number N that a jump can go to. */
 struct label {
@@ -35,6 +36,18 @@ struct jump {
     uint32_t program, number, line;
     size_t patch; /* in the text: where its digits begin */
     unsigned depth;
+    bool possible; /* one of several: without a target it is none of them */
+};
+
+/* A program that is called while a pass of a lathe is in effect. */
+struct passed {
+    uint32_t program;
+    unsigned pass;
+};
+
+/* DO that is open. */
+struct loop {
+    uint32_t number, line;
 };
 
 /* Blocks of the program that are a profile, and the subroutine that it has become. */
@@ -46,13 +59,20 @@ struct turned {
 /* What has been seen of the whole text before. */
 struct survey {
     bool lathe;
-    bool rotary; /* it has words of rotary axes */
-    bool whole;  /* turning cycles write distances in whole thousandths */
+    bool rotary;   /* it has words of rotary axes */
+    bool absolute; /* a lathe whose G90 is that of mills: it has G91 or G95 */
+    bool whole;    /* turning cycles write distances in whole thousandths */
     unsigned programs, macros;
     uint32_t program[TRANSLATE_PROGRAMS_MAX]; /* O1000 */
     uint32_t macro[TRANSLATE_PROGRAMS_MAX];   /* called by G65 */
     bool jumps;
-    bool ended; /* M30, M2 or M99 has passed */
+    unsigned targets; /* numbers N, each once; one more than the most: there are too many */
+    uint32_t target[TRANSLATE_TARGETS_MAX];
+    bool ended;              /* M30, M2 or M99 has passed */
+    bool drilling, relative; /* a series of drilling cycles, and G91, are in effect */
+    bool mixes;              /* a series has both G90 and G91 */
+    unsigned drilled;
+    uint32_t drills[TRANSLATE_PROGRAMS_MAX]; /* called in a series */
     unsigned calls, locals;
     uint32_t call[TRANSLATE_PROGRAMS_MAX];  /* N that M97 calls */
     uint32_t local[TRANSLATE_PROGRAMS_MAX]; /* those of them that begin behind an end */
@@ -88,18 +108,25 @@ struct translator {
     bool has_length;      /* G43 is in effect */
     bool has_height;      /* a cycle of the series in effect has had its R */
     bool has_two_heights; /* Fagor's G81 */
+    bool bores_fine;      /* G76 of a mill is in effect */
+    unsigned cycle;       /* that of drilling in effect, times ten; 0: none, or not known */
     bool bores_along;     /* and it goes along Z on a lathe */
     bool has_level;       /* its R counts from #<_level>, where the tool was before */
     unsigned arc;         /* G2 or G3 is in effect: 2, 3; else 0 */
     bool cuts_thread;     /* G32 is in effect */
     char lead[24];        /* K, the F of it */
-    unsigned turns;       /* the spindle, by M3 or M4: 3, 4; else 0 */
-    bool polar;           /* G16 is in effect */
-    unsigned side;        /* G41 or G42 is in effect: 41, 42; else 0 */
-    bool surface_is_owed; /* G96 waits for its S */
-    uint32_t program;     /* number of O1000 lines so far */
-    uint32_t macro;       /* the current program is called by G65; 0: it is not */
+    unsigned pass;        /* G90, G92 or G94 of a lathe is in effect: 90, 92, 94; else 0 */
+    unsigned pass_known;  /* its words so far (passes.c) */
+    unsigned passed;
+    struct passed passes[TRANSLATE_LINES_MAX];
+    unsigned turns;                      /* the spindle, by M3 or M4: 3, 4; else 0 */
+    bool polar;                          /* G16 is in effect */
+    unsigned side;                       /* G41 or G42 is in effect: 41, 42; else 0 */
+    bool surface_is_owed;                /* G96 waits for its S */
+    uint32_t program;                    /* number of O1000 lines so far */
+    uint32_t macro;                      /* the current program is called by G65; 0: it is not */
     char modal_call[TRANSLATE_CALL_MAX]; /* G66; empty: none */
+    char modal_times[48];                /* how often; empty: once */
     /*
      * Siemens: names that are jumped to, those of variables (DEF), open blocks, sections that are
      * repeated, the subprogram it is in
@@ -117,9 +144,10 @@ struct translator {
     unsigned profiles;
     double skip_from, skip_to; /* blocks to be passed over; 0: none */
     bool skipping;
-    char depth_of_cut[48], way_back[48]; /* G71 U R */
-    uint32_t thread_form;                /* P of the first line of G76 */
-    unsigned depth;                      /* open loops */
+    char depth_of_cut[48], way_back[48];   /* G71 U R */
+    uint32_t thread_form;                  /* P of the first line of G76 */
+    unsigned depth;                        /* open loops */
+    struct loop loop[TRANSLATE_LINES_MAX]; /* those of Fanuc */
     unsigned labels, jumps;
     struct label *label;
     struct jump jump[TRANSLATE_JUMPS_MAX];
@@ -141,6 +169,10 @@ static inline bool translate_is(const struct translator *t, unsigned dialects)
 
 /* Tells of a word that is left out, once for each. */
 void translate_note(struct translator *t, const struct line_word *w, const char *meaning);
+
+/* Tells what cannot be translated, at a word of the line; NULL: the line. */
+__attribute__((format(printf, 3, 4))) void
+translate_wrong(struct translator *t, const struct line_word *w, const char *format, ...);
 
 /* Shows text to the operator: a comment, so parentheses in it become brackets. */
 void translate_message(struct translator *t, const char *text, size_t length);

@@ -229,6 +229,19 @@ struct line_word *line_find(struct line *l, char letter, unsigned from)
     return NULL;
 }
 
+const struct line_word *line_number(const struct line *l)
+{
+    const struct line_word *w = l->word;
+
+    while (w < l->word + l->words &&
+           (w->kind == WORD_COMMENT ||
+            (w->kind == WORD_OTHER && strchr("/0123456789", w->letter) != NULL)))
+        w++;
+    return w < l->word + l->words && w->kind == WORD_VALUE && w->letter == 'n' && w->is_number
+               ? w
+               : NULL;
+}
+
 int line_code(const struct line_word *w)
 {
     const double number_x10 = w->value * 10.0;
@@ -380,10 +393,13 @@ bool line_is_blank(const struct line *l)
 
 bool line_is_calculation(const struct line *l, const struct line_word *w)
 {
-    const char c = l->text[skip_spaces(l, w->end)];
+    const char *behind = &l->text[skip_spaces(l, w->end)];
+    const bool operates = (*behind != '\0' && strchr("+-*/", *behind) != NULL) ||
+                          line_begins(behind, "mod") || line_begins(behind, "and") ||
+                          line_begins(behind, "or") || line_begins(behind, "xor");
 
     return w->kind == WORD_ASSIGNED && w->value_begin > 0 && w->end > w->value_begin &&
-           l->text[w->value_begin - 1] == '=' && c != '\0' && strchr("+-*/", c) != NULL;
+           l->text[w->value_begin - 1] == '=' && operates;
 }
 
 bool line_has_axis(struct line *l)
@@ -420,8 +436,7 @@ bool line_ends_cycle(struct line *l)
     return line_find_code(l, 'g', 800) != NULL;
 }
 
-/* Planes, units, compensation off, length off, systems, path, distances, feed modes. */
-static bool is_mode(int number)
+bool line_code_is_mode(int number)
 {
     return (number >= 170 && number <= 210) || number == 400 || number == 490 ||
            (number >= 540 && number <= 640) || (number >= 900 && number <= 911) ||
@@ -433,7 +448,7 @@ bool line_is_plain(const struct line *l)
     for (unsigned i = 0; i < l->words; i++) {
         const struct line_word *w = &l->word[i];
 
-        if (w->letter == 'g' && w->kind == WORD_VALUE && !is_mode(line_code(w)))
+        if (w->letter == 'g' && w->kind == WORD_VALUE && !line_code_is_mode(line_code(w)))
             return false;
     }
     return true;

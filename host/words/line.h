@@ -47,6 +47,9 @@ uint32_t line_whole(double value);
 /* The first word of a letter with a value, from a place on; NULL: none. */
 struct line_word *line_find(struct line *l, char letter, unsigned from);
 
+/* N10 that a line begins with, behind a slash and comments; NULL: it has none. */
+const struct line_word *line_number(const struct line *l);
+
 /* A G or M word with this number, times ten; NULL: none. */
 struct line_word *line_find_code(struct line *l, char letter, unsigned number_x10);
 
@@ -68,7 +71,7 @@ bool line_replace(struct line *l, struct line_word *w, const char *text);
 /* At the end, or in front of a comment that reaches to the end; with a space before it. */
 bool line_append(struct line *l, const char *text);
 
-/* #1 = value, and an operator behind it. */
+/* #1 = value, and an operator behind it: + - * / MOD AND OR XOR. */
 bool line_is_calculation(const struct line *l, const struct line_word *w);
 
 #define LINE_AXES "xyzabc"
@@ -79,6 +82,9 @@ void line_look_for_motion(struct line *l, bool *motion, bool *other);
 
 /* G80 ends a cycle, and no other motion begins on the line. */
 bool line_ends_cycle(struct line *l);
+
+/* Planes, units, compensation off, length off, systems, path, distances, feed modes; times ten. */
+bool line_code_is_mode(int number_x10);
 
 /* No G codes but modes: what its axis words are for is clear. */
 bool line_is_plain(const struct line *l);

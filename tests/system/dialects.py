@@ -304,7 +304,6 @@ t.write("same.ngc", "G21 G90 F600\nG0 X1\nG1 Y2\nG4 P0.5\nG2 X2 I0.5 J0\nM2\n")
 t.write("same.nc", "G21 G90 F600\n$H\nG0 X1\nG1 Y2\nG4 P0.5\nG2 X2 I0.5 J0 K0\nM2\n")
 digests = [[line for line in t.run("run", name)[1].splitlines() if "digest" in line] for name in ("same.ngc", "same.nc")]
 t.check(digests[0] == digests[1] and digests[0], "the same setpoints", digests)
-t.finish()
 
 # Turning cycles of Fanuc: what roughing leaves, finishing takes; the blocks of the profile are passed over.
 t.write("turning.nc", """\
@@ -322,7 +321,7 @@ G0 X30.
 M30
 %
 """)
-status, found, err = moves("turning.nc", "--tools", "auto", "--set", "spindle.encoder_counts=1024")
+status, found, err = moves("turning.nc", "--tools", "auto")
 ways = [line.split()[0:4:3] + [line.split()[1]] for line in found if line.startswith(("feed", "rapid"))]
 cuts = [(way[2], way[1]) for way in ways if way[0] == "feed"]
 t.check(status == 0 and cuts[0] == ("X10.000000", "Z-9.500000") and ("X3.500000", "Z-9.500000") in cuts
@@ -343,3 +342,89 @@ status, found, err = moves("ever.nc", "--lines-max", "30")
 t.check(status == 0 and "warning: the program goes back to its beginning for ever (M99); it was read for 30 lines" in err
         and found[-1] == "end", "M99 for ever", found, err)
 
+# Passes of lathes: G90, G92 and G94 end where they began, and hold until another motion.
+t.write("passes.nc", """\
+O1
+G50 S2000
+G97 S500 M3
+G0 X50. Z2.
+G90 X45. Z-20. F0.2
+U-10.
+/X30.
+G0 U10. W3.
+G92 X44.8 Z-15. F2.
+G92 U-20. W-30. R-3.
+G94 X10. Z-2. R0 F0.1
+G0 Z50.
+M30
+""")
+status, found, err = moves("passes.nc", "--dialect", "fanuc", "--block-delete")
+ways = [tuple(line.split()[i] for i in (0, 1, 3)) for line in found if line.startswith(("rapid", "feed", "thread"))]
+t.check((status, err) == (0, "") and ways == [
+    ("rapid", "X25.000000", "Z2.000000"),
+    ("rapid", "X22.500000", "Z2.000000"), ("feed", "X22.500000", "Z-20.000000"), ("feed", "X25.000000", "Z-20.000000"),
+    ("rapid", "X25.000000", "Z2.000000"),
+    ("rapid", "X20.000000", "Z2.000000"), ("feed", "X20.000000", "Z-20.000000"), ("feed", "X25.000000", "Z-20.000000"),
+    ("rapid", "X25.000000", "Z2.000000"), ("rapid", "X30.000000", "Z5.000000"),
+    ("rapid", "X22.400000", "Z5.000000"), ("thread", "X22.400000", "Z-15.000000"), ("rapid", "X30.000000", "Z-15.000000"),
+    ("rapid", "X30.000000", "Z5.000000"),
+    ("rapid", "X17.000000", "Z5.000000"), ("thread", "X20.000000", "Z-25.000000"), ("rapid", "X30.000000", "Z-25.000000"),
+    ("rapid", "X30.000000", "Z5.000000"),
+    ("rapid", "X30.000000", "Z-2.000000"), ("feed", "X5.000000", "Z-2.000000"), ("feed", "X5.000000", "Z5.000000"),
+    ("rapid", "X30.000000", "Z5.000000"), ("rapid", "X30.000000", "Z50.000000")], "passes of lathes", ways, err)
+leads = [line.split()[-1] for line in found if line.startswith("thread")]
+t.check(leads == ["F2.000000rev", "F2.009975rev"], "the lead along a cone is measured along its axis", leads)
+
+# Threads of Fanuc's G76, from outside and inside, as far as X says, and from the crest itself.
+for begin, ground, ways in (20, 17.6, {10, 10.0}), (22, 17.6, {11, 10.0}), (15, 20, {7.5}):
+    t.write("thread.nc", f"O1\nG50 S900\nG97 S500 M3\nG0 X{begin} Z2.\n"
+            f"G76 P010060 Q100 R.05\nG76 X{ground} Z-20. P1200 Q400 F1.5\nM30\n")
+    status, found, err = moves("thread.nc", "--dialect", "fanuc")
+    cuts = [float(line.split()[1][1:]) for line in found if line.startswith("thread")]
+    deepest = max(cuts) if ground > begin else min(cuts)
+    t.check(status == 0 and abs(deepest - ground / 2) < 1e-6, "a thread goes as deep as X says", begin, ground, cuts, err)
+t.write("thread.nc", "O1\nG50 S900\nG97 S500 M3\nG0 X19 Z2.\nG76 P010060 Q100 R.05\nG76 X17.6 Z-20. P1200 Q400 F1.5\nM30\n")
+status, found, err = moves("thread.nc", "--dialect", "fanuc")
+t.check(status == 2 and "thread.nc:6:1: error: the program ends itself:G76 begins below its crest" in err, "from below it", err)
+
+# Holes: R and Z stay where they are with G91, in subprograms too; L0 and K0 make none.
+t.write("holes.nc", """\
+O1
+G90 G54.1 P1
+G0 X0 Y0 Z20
+G99 G81 Z-10. R2. F100 K0
+X1
+M98 P100
+G80
+M30
+O100
+G91 X10. K2
+G90 X50
+M99
+""")
+status, found, err = moves("holes.nc", "--dialect", "fanuc")
+holes = [tuple(line.split()[1:4]) for line in found if line.startswith("feed")]
+t.check(status == 0 and holes == [(f"X{x}.000000", "Y0.000000", "Z-10.000000") for x in (1, 11, 21, 50)], "holes", found, err)
+
+# Jumps to a number that is worked out, and to lines behind a slash or a comment.
+t.write("goto.nc", "O1\n#1=20\nGOTO #1\nN10 G0 X1\n/N20 G0 X6\nGOTO 30\nX9\n(c)N30 X7\nM30\n")
+status, found, err = moves("goto.nc")
+t.check(status == 0 and found == [rapid(6), rapid(7), "end"], "jumps", found, err)
+t.write("goto.nc", "O1\n#1=20\nGOTO[#1+1]\nN20 M30\n")
+status, found, err = moves("goto.nc")
+t.check(status == 2 and "goto.nc:3:1: error: the program ends itself:GOTO: no line has this N" in err, "a jump to nowhere", err)
+
+# Mistakes are told by what stands in the program.
+for text, message in (("G0 X1\nEND2\n", "2:1: error: END2: no DO2 is open here"),
+                      ("DO1\nG0 X1\n", "1:1: error: DO1 has no END1 in this program"),
+                      ("G50 S9\nG90 X5.\n", "2:1: error: G90 on a lathe is a cycle and needs X or U, and Z or W"),
+                      ("G50 S9\n  G73 U3. R3\n", "2:3: error: 'G73', a profile that is repeated, is not supported: G71 is")):
+    t.write("wrong.nc", text)
+    status, found, err = moves("wrong.nc", "--dialect", "fanuc")
+    t.check(status == 2 and err.startswith(f"wrong.nc:{message}\n"), message, err)
+
+# What a translation leaves out is among the warnings that are counted.
+t.write("spline.gcode", "M104 S200\nG1 X1 F100\nG5 I0 J3 P0 Q-3 X6 Y5\n")
+status, out, err = t.run("check", "spline.gcode")
+t.check(status == 0 and ": no errors, 1 warning; " in out and "'G5'" not in err, "one warning, and a spline", out, err)
+t.finish()

@@ -381,7 +381,11 @@ static void test_threads_of_two_lines_become_one(void)
 {
     expect(DIALECT_FANUC, "G76 P020560 Q100 R.05\nG76 X8.5 Z-20. P1200 Q400 F1.5\n",
            "G18 G7\n"
-           "G76 P[1.5] Z[-20.] I[[8.5]+2*[1200*[0.001-0.0009*#<_imperial>]]-2*#<_x>] "
+           "#<_thread_way>=[1-2*[[8.5] LT 2*#<_x>]]\n"
+           "|#<_thread_gap>=[#<_thread_way>*[[8.5]-2*#<_x>]-2*[1200*[0.001-0.0009*#<_imperial>]]]\n"
+           "|o96000002 if [#<_thread_gap> LT -0.0001]\n|(abort,G76 begins below its crest)\n"
+           "|o96000002 endif\n|G76 P[1.5] Z[-20.] "
+           "I[#<_thread_way>*[#<_thread_gap>+0.0000001+ABS[#<_thread_gap>-0.0000001]]/2] "
            "J[2*[400*[0.001-0.0009*#<_imperial>]]] K[2*[1200*[0.001-0.0009*#<_imperial>]]] R2 "
            "Q[30.0000] H1 E[0.5*[1.5]] L2\n");
 }

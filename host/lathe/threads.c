@@ -3,7 +3,7 @@
  * until another motion, and F with it. Along a cone F is measured along one of the axes and K along
  * the cone: those stay as they are, and are told.
  */
-#include "dialect/translate.h"
+#include "lathe/lathe.h"
 
 #include <stdio.h>
 

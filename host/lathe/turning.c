@@ -14,13 +14,17 @@
  *
  * The two-line forms of G71 and G72 (G71 U2. R0.5 before) are read too.
  */
-#include "dialect/translate.h"
+#include "lathe/lathe.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #define PROFILE_LABEL 93000000U
 #define PECK_LABEL    94000000U
+#define THREAD_LABEL  96000000U
+/* Diameters that are as good as none: where the tool may be below the crest, and at least above. */
+#define BELOW_MAX "0.0001"
+#define GAP_MIN   "0.0000001"
 
 /* The text of a word's value, as an expression; otherwise without it. */
 static void expression(struct line *l, char letter, const char *otherwise, char *text, size_t size)
@@ -62,8 +66,9 @@ static const char *next_line(const struct translator *t, const char *at, struct 
 
 static bool has_number(const struct line *l, double number)
 {
-    return l->words > 0 && l->word[0].letter == 'n' && l->word[0].is_number &&
-           l->word[0].value == number;
+    const struct line_word *n = line_number(l);
+
+    return n != NULL && n->value == number;
 }
 
 /* Side of the profile's compensation: 41, 42 or 0. */
@@ -310,6 +315,22 @@ struct thread {
     double angle_deg; /* between the flanks */
 };
 
+/*
+ * Outwards or inwards, and how far the tool is from the crest: it may touch it, from below the
+ * crest it would come back through the thread.
+ */
+static void put_gap(struct translator *t, const struct thread *h)
+{
+    const unsigned label = THREAD_LABEL + t->number % 1000000U;
+
+    translate_add(&t->behind, "#<_thread_way>=[1-2*[[%s] LT 2*#<_x>]]", h->x);
+    translate_add(&t->behind, "#<_thread_gap>=[#<_thread_way>*[[%s]-2*#<_x>]-2*[%s]]", h->x,
+                  h->height);
+    translate_add(&t->behind, "o%u if [#<_thread_gap> LT -%s]", label, BELOW_MAX);
+    translate_add(&t->behind, "(abort,G76 begins below its crest)");
+    translate_add(&t->behind, "o%u endif", label);
+}
+
 static void put_thread(struct translator *t, const struct thread *h)
 {
     char out[64] = "";
@@ -320,9 +341,11 @@ static void put_thread(struct translator *t, const struct thread *h)
     if (h->run_out > 0.0)
         (void)snprintf(out, sizeof out, " E[%.1f*[%.40s]] L2", h->run_out, h->pitch);
     (void)line_read(&t->line, "", 0);
+    put_gap(t, h);
     translate_add(&t->behind,
-                  "G76 P[%s] Z[%s] I[[%s]+2*[%s]-2*#<_x>] J[2*[%s]] K[2*[%s]] R2 Q[%.4f] H%.0f%s",
-                  h->pitch, h->z, h->x, h->height, h->first, h->height, 0.5 * h->angle_deg,
+                  "G76 P[%s] Z[%s] I[#<_thread_way>*[#<_thread_gap>+%s+ABS[#<_thread_gap>-%s]]/2] "
+                  "J[2*[%s]] K[2*[%s]] R2 Q[%.4f] H%.0f%s",
+                  h->pitch, h->z, GAP_MIN, GAP_MIN, h->first, h->height, 0.5 * h->angle_deg,
                   h->finishing > 1.0 ? h->finishing - 1.0 : 0.0, out);
 }
 
@@ -412,7 +435,12 @@ void turning_translate(struct translator *t)
             take_depths(t);
         return;
     }
-    if (line_find_code(l, 'g', 700) != NULL && profile)
+    struct line_word *repeating = line_find_code(l, 'g', 730);
+
+    if (repeating != NULL && (profile || !line_has_axis(l)))
+        translate_wrong(t, repeating,
+                        "'G73', a profile that is repeated, is not supported: G71 is");
+    else if (line_find_code(l, 'g', 700) != NULL && profile)
         take_finish(t, p->value, q->value);
     else if (line_find_code(l, 'g', 740) != NULL || line_find_code(l, 'g', 750) != NULL)
         take_pecks(t, line_find_code(l, 'g', 750) != NULL ? 'x' : 'z',

@@ -6,7 +6,7 @@
  *     Z-9                  Z-9 G1
  *     X30 Z-14 R5          X30 Z-14 R5 G2
  */
-#include "dialect/translate.h"
+#include "lathe/lathe.h"
 
 #include <stdio.h>
 

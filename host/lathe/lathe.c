@@ -1,7 +1,7 @@
 /*
  * What all lines of a program for a lathe have: diameters, other feeds, and a turret.
  */
-#include "dialect/translate.h"
+#include "lathe/lathe.h"
 
 #include <stdio.h>
 
@@ -39,6 +39,35 @@ static void index_turret(struct translator *t, struct line_word *tool)
     (void)snprintf(text, sizeof text, "M%u", t->turns);
     if (goes_on)
         (void)line_append(l, text);
+}
+
+/*
+ * U is a distance in X as a diameter, W one in Z, where the machine file has not made them letters
+ * of other axes, and nothing else on the line means something by them.
+ */
+void lathe_translate_increments(struct translator *t)
+{
+    static const uint16_t users[] = {40,  100, 280, 300, 500, 650, 660,
+                                     700, 710, 720, 730, 740, 750, 760};
+    struct line *l = &t->line;
+    char text[LINE_MAX_BYTES];
+
+    for (size_t i = 0; i < sizeof users / sizeof users[0]; i++) {
+        if (line_find_code(l, 'g', users[i]) != NULL)
+            return;
+    }
+    for (const char *letter = "uw"; *letter != '\0'; letter++) {
+        struct line_word *w = line_find(l, *letter, 0);
+
+        if (w == NULL || codes_find(t->codes, w) != NULL)
+            continue;
+        (void)snprintf(text, sizeof text, "%c[%s%.*s]", *letter == 'u' ? 'X' : 'Z',
+                       t->incremental   ? ""
+                       : *letter == 'u' ? "2*#<_x>+"
+                                        : "#<_z>+",
+                       (int)(w->end - w->value_begin), &l->text[w->value_begin]);
+        (void)line_replace(l, w, text);
+    }
 }
 
 /* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
