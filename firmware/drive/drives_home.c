@@ -140,6 +140,7 @@ static bool shows_mode(struct drives *d)
 /* The question or its answer has got lost: it is asked again, and then the drive is lost. */
 static void miss_mode(struct drives *d)
 {
+    TAKT_ASSERT(d->at_axis < d->count && d->repeats <= DRIVES_SDO_REPEATS);
     if (d->repeats++ == DRIVES_SDO_REPEATS)
         takt_drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
                                  takt_drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);

@@ -1,4 +1,5 @@
 /* What each cycle sends: SYNC, then controlwords and target positions. */
+#include "base/assert.h"
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/little_endian.h"
@@ -165,6 +166,7 @@ static void send_start(struct drives *d, const struct can_port *port)
 static bool is_start_due(const struct drives *d)
 {
     const uint32_t turns = START_AGAIN_US / d->cycle_us + 1;
+    TAKT_ASSERT(d->count > 0);
     return d->phase_cycles / d->count % turns == turns - 1;
 }
 

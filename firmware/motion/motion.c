@@ -86,6 +86,7 @@ static bool is_program_stop(const struct motion *m, const struct motion_operator
 {
     struct move move;
 
+    TAKT_ASSERT(m->path->first != m->path->pushed);
     if (!wanted->program_stops || path_at(m->path, m->path->first)->motion ||
         takt_path_kind(m->path, m->path->first) != MOVE_STOP) {
         return false;

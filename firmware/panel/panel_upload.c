@@ -1,4 +1,5 @@
 /* Uploads as a request asks for them: begun, brought in chunks, committed, run while they come. */
+#include "base/assert.h"
 #include "panel/panel_private.h"
 
 #include <string.h>
@@ -6,6 +7,7 @@
 /* The controller alone knows whether a program may be taken now. */
 static enum panel_refusal hand_over(struct panel_request *r, uint32_t size, uint32_t crc)
 {
+    TAKT_ASSERT(r->client != NULL && r->client->panel != NULL);
     takt_panel_add_order(r, REGISTER_UPLOAD_SIZE, size);
     takt_panel_add_order(r, REGISTER_UPLOAD_CRC, crc);
     takt_panel_add_order(r, REGISTER_UPLOAD_COMMAND, r->command);

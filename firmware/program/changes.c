@@ -33,6 +33,7 @@ static bool lasts(unsigned parameter)
 
 static double value_of(const struct program *p, unsigned parameter)
 {
+    TAKT_ASSERT(parameter <= PARAMETER_NUMBER_MAX);
     return takt_parameters_get(p->config.parameters, parameter);
 }
 
@@ -95,6 +96,7 @@ void takt_changes_note_tool(struct program *p, unsigned index)
 
 void takt_changes_stamp(struct program *p, struct move *move)
 {
+    TAKT_ASSERT(p->changes.count <= PROGRAM_CHANGES_MAX);
     move->changes = p->changes.number;
     p->changes.open = false;
     p->changes.behind_move = true;

@@ -5,6 +5,7 @@
  */
 #include "program/refused.h"
 
+#include "base/assert.h"
 #include "program/words.h"
 
 /* The line goes on with the motion before it. */
@@ -12,6 +13,7 @@ static bool goes_on(const struct program *p)
 {
     const unsigned begin = p->words.code_span[STEP_MOTION].begin;
 
+    TAKT_ASSERT(begin < sizeof(p->lexer.text));
     return !words_has_step(p, STEP_MOTION) || p->lexer.text[begin] != 'g';
 }
 

@@ -1,5 +1,6 @@
 #include "smooth/exact.h"
 
+#include "base/assert.h"
 #include "smooth/exact_parts.h"
 #include "smooth/route_curved.h"
 #include "smooth/single.h"
@@ -414,6 +415,7 @@ static double go_along(const struct route *r, uint32_t element, double at_mm,
     const struct curve whole = *curve;
     const double end_mm = takt_curve_piece_end(&whole, 0.0);
 
+    TAKT_ASSERT(end_mm > 0.0 && to_mm > at_mm);
     if (end_mm >= whole.length_mm) {
         return to_mm;
     }

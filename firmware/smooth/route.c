@@ -336,6 +336,7 @@ static void tell_spline(const struct curve *c, struct move *move)
     const unsigned first = c->quintic.first;
     const unsigned second = c->quintic.second;
 
+    TAKT_ASSERT(c->kind == CURVE_QUINTIC && first < AXIS_COUNT && second < AXIS_COUNT);
     for (unsigned i = 0; i < 2; i++) {
         const double s_mm = i == 0 ? 0.0 : c->length_mm;
         struct point t;

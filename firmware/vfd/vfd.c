@@ -153,6 +153,7 @@ static void reset(struct vfd *v, const struct registers_port *port)
 {
     static const uint16_t word = VFD_RESET;
 
+    TAKT_ASSERT(v->resets > 0 && v->resets <= RESETS_MAX);
     v->resets--;
     v->is_refused = false;
     v->request = VFD_RESETS;
