@@ -28,7 +28,8 @@ def check_bus(what, summary):
     for response in bus["responses"]:
         within = response["predicted_us"] is not None and response["observed_us"] <= response["predicted_us"]
         t.check(within, what + ": no response above its worst case", response)
-    t.check(all(r["predicted_us"] <= summary["cycle_us"] for r in bus["responses"]), what + ": all within the cycle", bus)
+    cyclic = [r for r in bus["responses"] if r["name"] != "heartbeat"]  # those of all nodes may meet, and are last in rank
+    t.check(all(r["predicted_us"] <= summary["cycle_us"] for r in cyclic), what + ": all within the cycle", bus)
 
 
 def check_half_the_cycle():

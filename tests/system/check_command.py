@@ -27,7 +27,7 @@ O1 while [1
 O1 endwhile
 O100 call
 O200 call
-G2 X10 Y0 I1
+G2 X10 Y0
 #<a>=[#<b>+1]
 G17 G18
 G0 Z-999

@@ -33,7 +33,9 @@ def check_buses(what, summary, cycle_us):
     """Each bus for itself, as predicted of it."""
     for bus in (summary["bus"], summary["can1"]):
         t.check(0 < bus["load_percent"] <= bus["predicted_load_percent"] <= 100, what + ": the load is within the computed one", bus)
-        late = [r for r in bus["responses"] if not r["observed_us"] <= r["predicted_us"] <= cycle_us]
+        late = [r for r in bus["responses"] if not r["observed_us"] <= r["predicted_us"]]
+        # Heartbeats of all nodes may meet, and are last in rank.
+        late += [r for r in bus["responses"] if r["name"] != "heartbeat" and r["predicted_us"] > cycle_us]
         t.check(not late, what + ": no response above its worst case", late)
     names = [check["name"] for check in summary["checks"]]
     t.check({"bus_load", "bus_load.can1", "bus_response", "bus_response.can1"} <= set(names), what + ": all of it is checked", names)
