@@ -241,8 +241,8 @@
     X(THREAD_LAG, "the thread is %v mm off the spindle's angle, more than the allowed %l mm")      \
     X(TAP_DEEP, "the spindle does not turn back in time: the tap would go %v mm below the bottom") \
     X(THREAD_SHORT, "the thread is %v mm long; the lead-in and stopping take %l mm")               \
-    X(CHANGES_AHEAD, "more than %v offsets were read ahead of where the program was given up: "    \
-                     "check those in force")                                                       \
+    X(CHANGES_AHEAD,                                                                               \
+      "more than %v offsets were read ahead of where it was given up: check those in force")       \
     X(PROGRAM_STARVED, "the program did not arrive fast enough: the axes had to wait for it")      \
     X(PLAN_DAMAGED, "the compiled program is damaged")                                             \
     X(PLAN_STRAYED, "the compiled program does not match the part program")                        \

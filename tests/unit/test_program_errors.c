@@ -193,8 +193,10 @@ static void expect_errors(const char *text, const uint32_t *lines, unsigned coun
     while ((result = takt_program_next(&reader.program, &move, &reader.diagnostic)) !=
            PROGRAM_END) {
         if (result == PROGRAM_ERROR) {
-            TEST_ASSERT_TRUE_MESSAGE(errors < count, text);
-            TEST_ASSERT_EQUAL_UINT32_MESSAGE(lines[errors++], reader.diagnostic.line, text);
+            const uint32_t line = errors < count ? lines[errors] : 0;
+
+            errors++;
+            TEST_ASSERT_EQUAL_UINT32_MESSAGE(line, reader.diagnostic.line, text);
         }
     }
     TEST_ASSERT_EQUAL_UINT_MESSAGE(count, errors, text);
