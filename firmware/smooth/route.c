@@ -357,7 +357,7 @@ bool takt_route_along(const struct route *r, uint32_t index, double at_mm, struc
     struct curve c;
 
     takt_route_move(r, index, move);
-    if (!e->curved) {
+    if (!e->curved || at_mm >= end_mm) { /* an arc to where it begins is a circle */
         return false;
     }
     takt_route_curve(r, index, &c);

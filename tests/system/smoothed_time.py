@@ -259,12 +259,14 @@ def on_long_cycles_the_path_is_timed_with_its_chords():
 
 def curves_are_handed_on_as_they_are():
     """Splines and involutes of a path that is taken as it is programmed were gone along in lines, with a stop at most of their corners."""
+    unrolled = [(math.cos(a) + a * math.sin(a), math.sin(a) - a * math.cos(a)) for a in (2, 9)]  # of a circle of 1 mm
+    involute = "G1 X{:.8f} Y{:.8f}\nG3.2 X{:.8f} Y{:.8f} I{:.8f} J{:.8f} R1\n".format(*unrolled[0], *unrolled[1], *(-x for x in unrolled[0]))
     nurbs = "G5.2 X10 Y0 P1\nX10 Y10\nX0 Y10\nX0 Y20\nX20 Y20\nG5.3\n"
-    for name, curve in (("quadratic", "G5.1 X10 Y10 I5 J0\n"), ("cubic", "G5 I0 J10 P0 Q-10 X20 Y20\n"), ("NURBS", nurbs)):
+    for name, curve in (("quadratic", "G5.1 X10 Y10 I5 J0\n"), ("cubic", "G5 I0 J10 P0 Q-10 X20 Y20\n"), ("NURBS", nurbs), ("involute", involute)):
         for feed, tolerance in ((300, 0.1), (600, 0.1), (600, 1.0), (1500, 0.05)):
             program = f"G64 P{tolerance}\nG1 X0 Y0 F{feed}\n{curve}M2\n"
             exact_s, time_s = (time_of(program, hunt_programs.built_in(), *arguments) for arguments in (("--exact-path",), ()))
-            t.check(time_s <= 1.06 * exact_s, f"{name} spline, F{feed} P{tolerance}: no slower than the exact path", time_s, exact_s)
+            t.check(time_s <= 1.06 * exact_s, f"{name}, F{feed} P{tolerance}: no slower than the exact path", time_s, exact_s)
 
 
 def what_an_override_may_ask_for_stops_nobody():
