@@ -167,6 +167,7 @@ const struct fault_case fault_cases[] = {
                "the stop input, bit 0 of I/O node 4, is open"),
     IO_GOES_ON("the limit input is open at start: it can be driven off", "power io 4 report object=6000:01 value=01", 0.001),
     IO_GOES_ON("the I/O node sends its inputs only when they change", "power io 4 sdo_abort object=1800:02 code=06010002", 0.001),
+    IO_GOES_ON("NMT start of the I/O node is lost", "power bus drop id=000 skip=7 frames=1", 0.001),
     IO_REFUSED("the I/O node is absent", "power bus cut node=4", IO_ABSENT, "I/O node 4 has not booted within 6 s"),
     IO_REFUSED("the I/O node is none", "power io 4 report object=1000 value=20192", IO_TYPE,
                "I/O node 4 is no CiA 401 node: the device type, object 1000, is 00020192"),
