@@ -13,6 +13,7 @@ from canopen.profiles.p402 import BaseNode402
 TAKT = os.environ["TAKT"]
 NODE = 2
 PER_MM = 100000
+HOMED = f"node {NODE}: homing attained, method 34"
 
 # A machine under load answers late. The library's own limits suit an idle one; nothing below is measured by them.
 PATIENCE_S = 10.0
@@ -216,10 +217,11 @@ def check_lss(bus, connect, *options):
 def check_homing(node):
     node.sdo[0x6098].raw = 34  # the next index pulse, at 10 mm
     check("homing succeeds", node.homing(timeout=PATIENCE_S))
-    # The library takes an idle drive for a homed one, and may look before the drive has begun.
-    until("homing is attained", lambda: node.check_statusword() & 0x3400 == 0x1400)
+    # The library takes an idle drive for a homed one, and may look before the drive has begun; the log tells when it is.
+    until("homing is attained", lambda: HOMED in read("drives.log"))
     expect("homing is over", node.op_mode, "HOMING")
-    check("the drive is homed", node.is_homed())
+    until("the drive is homed", node.is_homed)
+    until("homing has reached its target", lambda: node.check_statusword() & 0x3400 == 0x1400)
     check("0 is where the pulse was", abs(actual(node)) < PER_MM, actual(node))
 
 
@@ -323,7 +325,7 @@ def check_bus(bus, connect, *options):
     network.disconnect()
     drives.stop()
     log = read("drives.log")
-    for line in ("node 2: EMCY 8611", "node 2: homing attained, method 34", "node 2: mode profile position",
+    for line in ("node 2: EMCY 8611", HOMED, "node 2: mode profile position",
                  "node 2: fault -> switch on disabled"):
         check(f"the log has '{line}'", line in log, log)
     check_lss(bus, connect, *options)
