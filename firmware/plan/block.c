@@ -24,12 +24,6 @@
 #include <string.h>
 
 /*
- * A junction that uses a part of the jerk budget uses at most this part of it of the acceleration
- * (junction.c).
- */
-#define ACCELERATION_PER_JERK_BUDGET 0.2
-
-/*
  * An axis outside the plane of an arc of two radii accelerates a little at constant feed: at most
  * this part.
  */

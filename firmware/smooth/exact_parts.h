@@ -1,7 +1,7 @@
 /*
  * Parts of the axes' limits that motions of the exact path take, and when a junction is passed.
- * plan/block.c and plan/junction.c, which say why, go by them; exact.c tells by them how long that
- * takes.
+ * plan/block.c and plan/junction.c, which say why, go by them; exact_time.c tells by them how
+ * long that takes.
  */
 #ifndef TAKT_SMOOTH_EXACT_PARTS_H
 #define TAKT_SMOOTH_EXACT_PARTS_H
@@ -17,10 +17,11 @@
 
 /*
  * Part of jerk that blocks leave to junctions at most, and of acceleration that a junction may use
- * with all of that.
+ * with all of that; of acceleration they leave this part of that of jerk.
  */
-#define BLOCK_JERK_BUDGET_MAX 0.5
-#define JUNCTION_ACCELERATION 0.1
+#define BLOCK_JERK_BUDGET_MAX        0.5
+#define JUNCTION_ACCELERATION        0.1
+#define ACCELERATION_PER_JERK_BUDGET (JUNCTION_ACCELERATION / BLOCK_JERK_BUDGET_MAX)
 
 /*
  * Junctions no farther apart add up in the third difference; those whose blocks last less than

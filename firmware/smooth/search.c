@@ -151,7 +151,7 @@ struct worth_window takt_search_asked(const struct smooth *s, union smooth_scrat
                                  .route = &s->route,
                                  .machine = &s->limits,
                                  .change = &s->change,
-                                 .pace = &scratch->pace,
+                                 .work = &scratch->worth,
                                  .pieces = s->ready + s->proved,
                                  .kept = s->ready,
                                  .rest_s = (float)takt_smooth_rest_s(s),

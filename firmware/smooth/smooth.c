@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "smooth/exact.h"
+#include "smooth/exact_time.h"
 #include "smooth/fill.h"
 #include "smooth/head.h"
 #include "smooth/piece.h"

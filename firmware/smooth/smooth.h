@@ -71,7 +71,7 @@ enum smooth_taken {
 union smooth_scratch {
     struct relax relax;
     struct timing timing;
-    struct worth_pace pace;
+    union worth_work worth;
 };
 
 /* Is a piece still to come, in which the axes stand? */

@@ -165,7 +165,7 @@ static bool try_one(struct smooth *s, union smooth_scratch *scratch, const struc
     bool whole;
 
     begin(s, scratch, from, &now, v);
-    whole = takt_search_is_end(s, s->ready);
+    whole = s->window.at_end;
     while (outcome == GOES_ON) {
         if (g.windows > 0) {
             go_on(s, scratch, v);

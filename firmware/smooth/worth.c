@@ -1,7 +1,7 @@
 #include "smooth/worth.h"
 
 #include "base/assert.h"
-#include "smooth/exact.h"
+#include "smooth/exact_time.h"
 #include "smooth/single.h"
 
 static void set_piece(const struct worth_window *now, unsigned i, struct worth_pace *p)
@@ -24,7 +24,7 @@ static void set_piece(const struct worth_window *now, unsigned i, struct worth_p
  */
 static void find_pace(const struct worth_window *now, float from)
 {
-    struct worth_pace *p = now->pace;
+    struct worth_pace *p = &now->work->pace;
     const unsigned n = now->pieces;
     float next = SINGLE_INFINITY;
 
@@ -80,7 +80,7 @@ static float ramp(const struct worth_window *now, uint32_t element, float feed)
 /* Goes along the pieces from a rate on; returns the time for them. */
 static float go(const struct worth_window *now, float from, struct passed *last)
 {
-    const struct worth_pace *pace = now->pace;
+    const struct worth_pace *pace = &now->work->pace;
     const struct window *w = now->window;
     uint32_t next = next_rest(now, w->element[0]);
     float time = now->starts ? now->rest_s : 0.0f;
@@ -130,6 +130,12 @@ static uint32_t rest_before(const struct worth_window *now, uint32_t element, ui
     return element;
 }
 
+/* From rest at the start of an element to that of another. */
+static float time_between(const struct worth_window *now, uint32_t from, uint32_t to)
+{
+    return takt_exact_time(now->route, now->machine, 0.0, from, to, &now->work->exact);
+}
+
 /*
  * From rest at the start of an element to a place: of the way between two rests a part.
  */
@@ -144,8 +150,8 @@ static float path_time(const struct worth_window *now, uint32_t first, double at
     const float cruise = takt_route_time(r, from, start_mm, route_end_of(r, to - 1));
 
     TAKT_ASSERT(from >= first && to > last && cruise > 0.0f);
-    return takt_exact_time(r, now->machine, 0.0, first, from) +
-           time_of_part(takt_exact_time(r, now->machine, 0.0, from, to), cruise,
+    return (from > first ? time_between(now, first, from) : 0.0f) +
+           time_of_part(time_between(now, from, to), cruise,
                         takt_route_time(r, from, start_mm, at_mm) / cruise);
 }
 
@@ -155,16 +161,10 @@ static float path_time(const struct worth_window *now, uint32_t first, double at
  */
 #define LONGER 1.04f
 
-/*
- * Up to so many times the path's time on what is known may gain on what is not, where that has no
- * rest yet.
- */
-#define UNKNOWN 1.05f
-
 static float path_time_of_all(const struct worth_window *now)
 {
     return takt_exact_time(now->route, now->machine, now->window->at_mm[0], now->window->element[0],
-                           now->route->count);
+                           now->route->count, &now->work->exact);
 }
 
 /*
@@ -186,6 +186,24 @@ void takt_worth_run(const struct worth_window *now, float rate, struct worth_run
     run->rate = last.rate;
 }
 
+/*
+ * Of the path's time on what is not known yet, where that has no rest, so much of what is known may
+ * be gained at most: and no more than that is slower than its feed.
+ */
+#define UNKNOWN 0.05f
+
+/* What the path on all that is known is slower than its feed, but where it begins and ends. */
+static float slower_than_feed(const struct worth_window *now, float path_s)
+{
+    const struct route *r = now->route;
+    const struct window *w = now->window;
+    const uint32_t last = r->count - 1;
+    const float cruise = takt_route_time(r, w->element[0], w->at_mm[0], takt_route_end(r));
+
+    return path_s - cruise - ramp(now, w->element[0], route_element(r, w->element[0])->feed_mm_s) -
+           ramp(now, last, route_element(r, last)->feed_mm_s);
+}
+
 bool takt_worth_path_from_rest(const struct worth_window *now, const struct worth_far *curve,
                                double *to_mm)
 {
@@ -201,7 +219,10 @@ bool takt_worth_path_from_rest(const struct worth_window *now, const struct wort
     if (now->finished || last.time > 0.0f) {
         return path_time_of_all(now) < time_of_all(now, whole ? times : LONGER * times);
     }
-    return times > 1.0f || UNKNOWN * path_time_of_all(now) < time_of_all(now, times);
+    const float path_s = path_time_of_all(now);
+    const float gain = single_clamp(slower_than_feed(now, path_s), 0.0f, UNKNOWN * path_s);
+
+    return times > 1.0f || path_s + gain < time_of_all(now, times);
 }
 
 /*

@@ -5,6 +5,7 @@
 #ifndef TAKT_SMOOTH_WORTH_H
 #define TAKT_SMOOTH_WORTH_H
 
+#include "smooth/exact_time.h"
 #include "smooth/verifier.h"
 #include "smooth/window.h"
 
@@ -19,13 +20,18 @@ struct worth_pace {
              1]; /* and what it is where each begins, and where the last one ends */
 };
 
+union worth_work {
+    struct worth_pace pace;
+    struct exact_work exact;
+};
+
 /* The first pieces of a window. */
 struct worth_window {
     const struct window *window;
     const struct route *route;
     const struct smooth_limits *machine;
     const struct verifier_change *change;
-    struct worth_pace *pace;
+    union worth_work *work;
     unsigned pieces;
     unsigned kept; /* of them: these are handed on */
     float rest_s;  /* what a curve takes longer where it begins and ends at rest */
