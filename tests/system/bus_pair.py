@@ -1,8 +1,11 @@
 """What the tests of buses share: virtual drives as a process of their own, and a controller that comes to them."""
 
+import atexit
 import os
+import queue
 import re
 import subprocess
+import threading
 
 import takt_test as t
 
@@ -17,14 +20,28 @@ class Drives:
         self.process = subprocess.Popen(
             [t.TAKT, "drives", "--bus", bus, *options], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
-        first = self.process.stdout.readline()
+        atexit.register(self.process.kill)
+        self.lines = queue.SimpleQueue()  # of its log; empty: its end
+        threading.Thread(target=self.hear, daemon=True).start()
+        first = self.lines.get()
         found = re.search(r"bus (\S+)", first)
         t.check(found, "the drives say where they are", bus, first)
         self.address = found.group(1) if found else ""
 
+    def hear(self):
+        """All the time: drives whose log nobody takes stand still once the pipe is full."""
+        for line in self.process.stdout:
+            self.lines.put(line)
+        self.lines.put("")
+
+    def wait_for(self, text):
+        """Until a line of the log has it."""
+        while text not in (line := self.lines.get()):
+            assert line, "the drives have ended"
+
     def stop(self):
         self.process.terminate()
-        rest = self.process.stdout.read()
+        rest = "".join(iter(self.lines.get, ""))
         t.check(self.process.wait() == 0, "the drives end well when asked to", rest)
         return rest
 

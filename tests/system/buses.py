@@ -119,8 +119,7 @@ def controller_in_the_middle(drives, *options):
     program = t.write("long.ngc", "G21 G90 F3000\n" + "G1 X50\nG1 X0\n" * 200 + "M2\n")
     command = [t.TAKT, "run", program, "--bus", "slcan:" + drives.address, "--quiet", *options]
     controller = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    while "operation enabled" not in (line := drives.process.stdout.readline()):
-        assert line, "the drives have ended"
+    drives.wait_for("operation enabled")
     return controller
 
 

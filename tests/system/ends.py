@@ -254,7 +254,6 @@ class Outside:
     def __init__(self, moment):
         self.moment = moment
         self.drives = bus_pair.Drives("slcan:listen:0")
-        threading.Thread(target=self.drives.process.stdout.read, daemon=True).start()
         self.proxy = Proxy(self.drives.address)
 
     def bus(self):

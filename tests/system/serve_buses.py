@@ -64,7 +64,7 @@ def enable(client):
             client.refusal("RESET", 1)
         return client.counts("STATE") == p.IDLE
 
-    p.until(is_idle, lambda: "the drives are not enabled: " + client.text("ALARM_TEXT"))
+    p.until(is_idle, lambda: f"the drives are not enabled: state {client.counts('STATE')}, {client.text('ALARM_TEXT')}")
 
 
 def is_disturbed(client):
