@@ -154,8 +154,7 @@ def check_service():
     client.put("MDI_START", 1)
     client.wait_for("STATE", p.ALARM)
     t.check("the stop input, bit 0 of I/O node 20, is open" in client.text("ALARM_TEXT"), "the stop input is an alarm", client.text("ALARM_TEXT"))
-    client.put("RESET", 1)
-    client.wait_for("STATE", p.IDLE)
+    client.reset()
     t.check(client.run_line("G0 X5") == p.COMPLETED and client.get("POSITION_X") == 5, "after a reset the axes move", client.text("ALARM_TEXT"))
     service.stop()
 

@@ -168,6 +168,11 @@ class Client:
         high, low = self.counts("DIGEST_HIGH"), self.counts("DIGEST_LOW")
         return f"{high << 32 | low:016x}"
 
+    def reset(self):
+        """RESET, which is refused while drives brake, until all is enabled and at rest."""
+        until(lambda: self.refusal("RESET", 1)[0] == 0, lambda: "RESET stays refused")
+        self.wait_for("STATE", IDLE)
+
     def run(self, program):
         """Uploads, starts, and follows to the end; returns how it ended."""
         self.upload(program)

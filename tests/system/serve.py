@@ -5,6 +5,9 @@ import re
 import panel_client as p
 import takt_test as t
 
+# After a first wrong password none is looked at for so many.
+WRONG_CYCLES = 1000
+
 PROGRAM = b"G21 G90 G61 F1800\nG1 X3 Y2\nG2 X5 Y0 I0 J-2\nG1 X0\nG0 Z1\nM2\n"
 
 
@@ -217,8 +220,7 @@ def check_emergency():
     t.check(client.refusal("RESET", 1) == (4, 1), "no reset while the button is in")
     client.put("EMERGENCY_STOP", 0)
     client.wait_for("STATE", p.ALARM)
-    p.until(lambda: client.refusal("RESET", 1)[0] == 0, lambda: "RESET stays refused")
-    client.wait_for("STATE", p.IDLE)
+    client.reset()
     at = client.get("POSITION_X")
     t.check(5 < at < 400 and abs(client.get("ACTUAL_X") - at) < 0.01, "the drives are where the setpoint is", at)
     client.put("MODE", 1)
@@ -245,8 +247,11 @@ def check_rights():
     service, one = ready("--set", "panel.password=4711")
     two = service.client()
     t.check(one.refusal("MODE", 1) == (4, 2), "without the password nothing is written")
+    began = one.counts("CYCLES")
     t.check(one.refusal("PASSWORD", 1) == (3, 4), "a wrong one is refused")
-    t.check(one.refusal("PASSWORD", 4711) == (6, 6), "after it none is looked at for a while")
+    refusal = one.refusal("PASSWORD", 4711)
+    is_soon = one.counts("CYCLES") - began < WRONG_CYCLES  # a busy computer may be late with the second
+    t.check(refusal == (6, 6) or not is_soon, "after it none is looked at for a while", refusal)
     p.until(lambda: one.refusal("PASSWORD", 4711)[0] == 0, lambda: "the password stays refused")
     one.put("MODE", 1)
     t.check(two.refusal("MODE", 0) == (4, 2), "it counts for one client")

@@ -93,8 +93,7 @@ def is_not_read_after_an_emergency_stop(client, text):
     t.check(begin(client, text.encode())[0] == 4, "nothing is streamed in an emergency stop")
     client.wait_for("STATE", p.EMERGENCY)
     p.until(lambda: client.refusal("EMERGENCY_STOP", 0) == (0, 0), lambda: "the button stays in")
-    p.until(lambda: client.refusal("RESET", 1) == (0, 0), lambda: "the drives do not come to rest")
-    client.wait_for("STATE", p.IDLE)
+    client.reset()
     t.check(client.get("WORK_OFFSET_X") == 0, "what comes after the stop is not read", client.get("WORK_OFFSET_X"))
 
 
