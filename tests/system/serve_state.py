@@ -33,6 +33,12 @@ def wait_until_kept(*lines):
     p.until(lambda: all(line in kept() for line in lines), lambda: f"{lines} are not kept in {kept()}")
 
 
+def kept_line():
+    """In which the program is cut short; 0: in none, or there is no program."""
+    words = kept().partition("program ")[2].split("\n")[0].split()
+    return int(words[2]) if len(words) > 2 else 0
+
+
 def kill(service):
     service.process.send_signal(signal.SIGKILL)
     service.process.communicate()
@@ -88,15 +94,16 @@ def check_line():
     client.put("MODE", 0)
     client.put("CYCLE_START", 1)
     client.wait_above("ACTIVE_LINE", 4)
-    wait_until_kept(" 5\nparameter")
+    p.until(lambda: kept_line() >= 5, lambda: f"no line is kept in {kept()}")
     kill(service)
-    line = int(kept().split("program ")[1].split("\n")[0].split()[2])
+    line = kept_line()
     service, client = start()
     t.check(client.counts("PROGRAM_SIZE") == len(PROGRAM), "the program is there")
     t.check(client.counts("CUT_LINE") == line >= 5, "and where it was cut short", client.counts("CUT_LINE"), line)
     client.put("START_LINE", line)
+    client.put("FEED_OVERRIDE", 1)  # the line lasts as long as we like
     client.put("CYCLE_START", 1)
-    client.wait_for("ACTIVE_LINE", line, line + 1)
+    client.wait_for("ACTIVE_LINE", line)
     t.check(client.counts("START_LINE") == 0, "START_LINE counts once")
     client.put("RESET", 1)
     client.wait_for("STATE", p.IDLE)

@@ -22,7 +22,8 @@ import takt_test as t
 PROGRAM = "G21 G90 G61 F3000\nG1 X6 Y4\nG2 X10 Y0 I0 J-4\nG1 X0 Z-1\nG0 Z1\nM2\n"
 SMOOTH = "G21 G90 G64 P0.01 F3000\nG1 X3 Y2 Z0\nG2 X5 Y0 I0 J-2\nG1 X0 Z-1\nG0 Z0\nM2\n"
 LONG = "G21 G90 G64 P0.01 F3000\n" + "".join(f"G1 X{x} Y{x % 2}\n" for x in range(1, 36)) + "G1 Z2\nM2\n"
-IDLE, HOMING = "1", "5"
+IDLE, HOMING, ALARM = "1", "5", "8"
+TURNS = 30
 KERNEL = "--kernel" in sys.argv
 INTERFACE = "slcan0"
 READY, STOP = "drives.ready", "drives.stop"
@@ -90,6 +91,19 @@ def run_drives():
     t.finish()
 
 
+def enable(panel):
+    """Before SYNC is the drives' clock they watch the controller by the wall's: an image that a busy computer keeps from running
+    is a controller that has gone. Then RESET."""
+    def is_idle():
+        seen = panel.read("STATE", "ALARM_TEXT")
+        if seen["STATE"].strip() == ALARM:
+            t.check("heartbeat of the controller lost" in seen["ALARM_TEXT"], "no other alarm at the start", seen)
+            t.run("panel", "write", "RESET", "1", *panel.options)
+        return seen["STATE"].strip() == IDLE
+
+    target.wait_for(is_idle, "the drives are enabled")
+
+
 def home(panel):
     panel.write("MODE", 2)
     panel.write("HOME", 1)
@@ -107,6 +121,16 @@ def run_program(panel):
     panel.write("CYCLE_START", 1)
     while panel.number("RUNS") == runs:
         seen.append(panel.number("POSITION_X"))
+    return seen
+
+
+def follow(panel, digest):
+    """The program, from zero: positions seen on the way, of which a busy computer may see few."""
+    home(panel)
+    seen = run_program(panel)
+    t.check(panel.number("OUTCOME") == 1, "the program is completed", panel.read("ALARM_TEXT"))
+    t.check(panel.digest() == digest, "its setpoints are those of takt run", panel.digest(), digest)
+    t.check(abs(panel.number("ACTUAL_Z") - 1) < 0.01, "the drive stands where the program ends")
     return seen
 
 
@@ -136,13 +160,8 @@ def check_streams(panel):
 
 
 def check_run(board, panel, digest):
-    target.wait_for(lambda: any("state: idle" in line for line in board.log()), "the drives are enabled")
-    home(panel)
-    seen = run_program(panel)
-    t.check(panel.number("OUTCOME") == 1, "the program is completed", panel.read("ALARM_TEXT"))
-    t.check(panel.digest() == digest, "its setpoints are those of takt run", panel.digest(), digest)
-    t.check(len(set(seen)) > 1, "positions were read in motion", seen)
-    t.check(abs(panel.number("ACTUAL_Z") - 1) < 0.01, "the drive stands where the program ends")
+    enable(panel)
+    t.check(any(len(set(follow(panel, digest))) > 1 for _ in range(TURNS)), "positions were read in motion")
     log = "\n".join(board.log())
     t.check("state: running" in log and f"completed, setpoints {digest}" in log, "the log has what happened", log)
 
