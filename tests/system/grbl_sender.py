@@ -8,11 +8,15 @@ import time
 import tty
 
 import panel_client as p
+import takt_test as t
 
 # What a sender counts on when it keeps count of characters.
 WINDOW = 1000
 
 RESET = b"\x18"
+
+# So often a text is sent anew that a busy computer has broken in two.
+TURNS = 30
 
 
 class Socket:
@@ -121,6 +125,18 @@ class Sender:
             waiting.append(len(data))
         wrong += [answer for answer in (self.answer() for _ in waiting) if answer != "ok"]
         return wrong
+
+
+def send_whole(runs, back, send):
+    """back() to the start, then send() a text as one program; both return at rest. A sender that the computer keeps from sending
+    for 0.1 s has ended its program by that, and what comes then is the next one: then all again. runs(): so many have ended."""
+    for _ in range(TURNS):
+        back()
+        before = runs()
+        send()
+        if runs() == before + 1:
+            return
+    t.check(False, f"one of {TURNS} times a text is sent without a pause")
 
 
 def serve(where, *options):
