@@ -28,13 +28,18 @@ static modbus_t *new_context(const struct client_config *config)
                           config->parity == 'N' ? 2 : 1);
 }
 
+/*
+ * A pause within an answer may be as long as that before it: a busy computer makes pauses where
+ * the line has none, and what comes after would be taken for the next answer.
+ */
 static bool connect_context(modbus_t *context, const struct client_config *config)
 {
     const uint32_t seconds = config->timeout_ms / 1000;
     const uint32_t us = config->timeout_ms % 1000 * US_PER_MS;
 
     return modbus_set_slave(context, config->unit) == 0 &&
-           modbus_set_response_timeout(context, seconds, us) == 0 && modbus_connect(context) == 0;
+           modbus_set_response_timeout(context, seconds, us) == 0 &&
+           modbus_set_byte_timeout(context, seconds, us) == 0 && modbus_connect(context) == 0;
 }
 
 bool client_open(struct client *client, const struct client_config *config)

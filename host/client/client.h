@@ -21,7 +21,7 @@ struct client_config {
     uint32_t bauds;
     char parity; /* 'E', 'O', 'N': two stop bits */
     uint8_t unit;
-    uint32_t timeout_ms; /* of connecting, and of an answer */
+    uint32_t timeout_ms; /* of connecting, of an answer, and of a pause within it */
 };
 
 struct client {

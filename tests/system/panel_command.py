@@ -1,6 +1,8 @@
 """takt panel: the panel of a running controller by the names of its registers; its table as documentation."""
 
 import os
+import struct
+import subprocess
 
 import data_sheets
 import panel_client as p
@@ -72,6 +74,29 @@ check_says(["read", "DRIVES_GIVEN_UP"], "\n  1801:05         the error code is t
            "  6502            a mode of velocity: the controller closes the position loop\n")
 service.stop()
 line.close()
+
+
+
+def check_pause():
+    """A controller that pauses within its answer is waited for, and the rest is not taken for the next answer."""
+    line = p.Line()
+    asking = subprocess.Popen([t.TAKT, "panel", "read", "STATE", "--serial", line.path + ",115200,none", "--timeout", "60"],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    t.check(line.receive(8)[:2] == b"\1\4", "a register is asked for")
+    answer = b"\1\4\2\0\1"
+    answer += struct.pack("<H", p.crc16(answer))
+    line.send(answer[:4])
+    try:
+        asking.wait(1)  # s; libmodbus waits half of it if it is not told
+    except subprocess.TimeoutExpired:
+        pass
+    line.send(answer[4:])
+    out, err = asking.communicate()
+    t.check(asking.returncode == 0 and out == "STATE = 1\n", "a pause within an answer is borne", asking.returncode, out, err)
+    line.close()
+
+
+check_pause()
 
 for options, status, said in (
     (["--listen", "nowhere"], 2, "HOST:PORT"),
