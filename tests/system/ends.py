@@ -44,7 +44,11 @@ COMMANDS = ("run", "realtime", "serve")
 
 
 class Disturbed(Exception):
-    """In real time a proxy that is kept from running is a drive that is silent: such a moment is tried again."""
+    """In real time a proxy that is kept from running is a drive, or a controller, that is silent: such a moment is tried again."""
+
+
+def is_of_silence(text):
+    return "has sent no position" in text or "heartbeat of the controller lost" in text
 
 
 class Proxy:
@@ -384,7 +388,7 @@ class Moment:
         return 0 if self.command == "serve" else 128 + getattr(signal, "SIG" + self.way)
 
     def look_for_silence(self):
-        if "has sent no position" in self.client.text("ALARM_TEXT"):
+        if is_of_silence(self.client.text("ALARM_TEXT")):
             raise Disturbed
 
     def judge_lost_bus_of_service(self):
@@ -411,7 +415,7 @@ class Moment:
             self.field.judge_drives_alone()
         out, err = self.process.stdout.read(), self.process.stderr.read()
         status = self.process.wait()
-        if self.command == "realtime" and status == 1 and "has sent no position" in err:
+        if self.command == "realtime" and status == 1 and is_of_silence(err):
             raise Disturbed
         self.check(status == self.expected_status(), "the exit status says which end it was", status, err)
         if self.way == "KILL":

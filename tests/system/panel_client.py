@@ -76,13 +76,17 @@ class Client:
             data += part
         return data
 
-    def ask(self, pdu):
-        """A request as it is; returns the reply's PDU. Raises Refused."""
-        self.transaction = (self.transaction + 1) % 65536
-        self.socket.sendall(struct.pack(">HHHB", self.transaction, 0, len(pdu) + 1, 1) + pdu)
+    def ask(self, *pdus):
+        """Requests as they are, in one packet; returns the last reply's PDU. Raises Refused."""
+        numbers = [(self.transaction + i) % 65536 for i in range(1, len(pdus) + 1)]
+        self.transaction = numbers[-1]
+        self.socket.sendall(b"".join(struct.pack(">HHHB", n, 0, len(pdu) + 1, 1) + pdu for n, pdu in zip(numbers, pdus)))
+        return [self.take_reply(number, pdu) for number, pdu in zip(numbers, pdus)][-1]
+
+    def take_reply(self, number, pdu):
         transaction, protocol, length, unit = struct.unpack(">HHHB", self.receive(7))
         reply = self.receive(length - 1)
-        assert (transaction, protocol, unit) == (self.transaction, 0, 1), "the reply's header is that of the request"
+        assert (transaction, protocol, unit) == (number, 0, 1), "the reply's header is that of the request"
         return checked(pdu, reply)
 
     def read_words(self, function, address, count):

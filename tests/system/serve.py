@@ -1,6 +1,7 @@
 """takt serve: registers, states, programs, MDI, jog, homing, offsets, faults, as a client on Modbus TCP sees them."""
 
 import re
+import struct
 
 import panel_client as p
 import takt_test as t
@@ -238,8 +239,9 @@ def check_emergency_at_the_end():
     client.wait_for("STATE", p.STOPPING)
     t.check(client.refusal("SINGLE_BLOCK", 1) == (4, 1), "a service that ends takes no orders")
     t.check(client.refusal("FEED_HOLD", 1) == (0, 0), "but a hold")
-    client.put("EMERGENCY_STOP", 1)
-    t.check(client.counts("STATE") == p.EMERGENCY, "and an emergency stop")
+    stop, state = (int(p.REGISTERS[name]["address"]) for name in ("EMERGENCY_STOP", "STATE"))
+    reply = client.ask(struct.pack(">BHH", 5, stop, 0xFF00), struct.pack(">BHH", 4, state, 1))  # it is gone soon
+    t.check(reply[2:] == struct.pack(">H", p.EMERGENCY), "and an emergency stop", reply)
     t.check(service.process.wait(p.PATIENCE_S) == 0, "it has ended in order")
 
 
@@ -335,6 +337,7 @@ check_errors_of_programs()
 check_by_hand()
 check_offsets()
 check_emergency()
+check_emergency_at_the_end()
 check_rights()
 check_spindle_lost()
 check_line()

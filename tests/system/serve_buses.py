@@ -68,7 +68,8 @@ def enable(client):
 
 
 def is_disturbed(client):
-    return "has sent no position" in client.text("ALARM_TEXT")
+    text = client.text("ALARM_TEXT")
+    return "has sent no position" in text or "heartbeat of the controller lost" in text
 
 
 def check_program(client, digest, what):
