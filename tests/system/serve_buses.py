@@ -72,11 +72,30 @@ def is_disturbed(client):
     return "has sent no position" in text or "heartbeat of the controller lost" in text
 
 
+def start(client, program):
+    """Whether it has been taken and begun; drives that are silent at rest are an alarm, too."""
+    try:
+        client.upload(program)
+        client.put("CYCLE_START", 1)
+    except p.Refused:
+        return False
+    return True
+
+
+def run(client):
+    """Whether the program comes to its end."""
+    runs = client.counts("RUNS")
+    if not start(client, PROGRAM):
+        return False
+    client.wait_while("RUNS", runs)
+    return client.counts("OUTCOME") == p.COMPLETED
+
+
 def check_program(client, digest, what):
     """It runs to its end; behind a disturbance once more, since it ended where it begins, but began elsewhere."""
     elsewhere = False
     for _ in range(TURNS):
-        if client.run(PROGRAM) == p.COMPLETED:
+        if completes := run(client):
             if not elsewhere:
                 break
             elsewhere = False
@@ -85,7 +104,7 @@ def check_program(client, digest, what):
             elsewhere = True
         else:
             break
-    t.check(client.counts("OUTCOME") == p.COMPLETED, what + ": the program runs", client.text("ALARM_TEXT"))
+    t.check(completes, what + ": the program runs", client.text("ALARM_TEXT"))
     t.check(digest is None or client.digest() == digest, what + ": the setpoints of takt run", client.digest(), digest)
 
 
@@ -100,9 +119,8 @@ def check_inside(digest):
 
 def lose(client, cable, bus, axes):
     """In motion: an alarm about that bus, and nothing moves. Mended, RESET enables the drives."""
-    client.upload(b"G21 G90 F600\nG1 X200 Y100 Z-20 A90\nM2\n")
-    client.put("CYCLE_START", 1)
-    client.wait_above("FEED", 1)
+    if start(client, b"G21 G90 F600\nG1 X200 Y100 Z-20 A90\nM2\n"):
+        p.until(lambda: client.get("FEED") >= 1 or client.counts("STATE") == p.ALARM, lambda: "nothing moves")
     cable.cut()
     client.wait_for("STATE", p.ALARM)
     if is_disturbed(client):
