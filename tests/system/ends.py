@@ -400,6 +400,7 @@ class Moment:
         proxy.wait(lambda: proxy.controller is not None, "the service looks for the bus")
         proxy.wait(proxy.none_enabled, "the drives stay off until RESET")
         p.until(self.is_enabled_again, lambda: "RESET does not enable the drives: " + self.client.text("ALARM_TEXT"))
+        self.field.began = proxy.syncs  # the bus has been looked for as long as the computer let it
         self.process.send_signal(signal.SIGTERM)
 
     def is_enabled_again(self):

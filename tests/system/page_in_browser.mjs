@@ -18,7 +18,7 @@ const mistakes = [];
 // axis stops with an alarm, as it should; so the watchdog is long but where its end is what is tried.
 function makePatient() {
   const send = WebSocket.prototype.send;
-  WebSocket.prototype.send = function (message) { return send.call(this, typeof message === "string" ? message.replace(/\["WATCHDOG",[1-9]\d*\]/, '["WATCHDOG",5000]') : message); };
+  WebSocket.prototype.send = function (message) { return send.call(this, typeof message === "string" ? message.replace(/\["WATCHDOG",[1-9]\d*\]/, '["WATCHDOG",60000]') : message); };
 }
 
 async function open(size, watchdog = makePatient) {

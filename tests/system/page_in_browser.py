@@ -13,7 +13,7 @@ import page_client as w
 import panel_client as p
 import takt_test as t
 
-HANGS_AFTER_S = 300
+HANGS_AFTER_S = 540  # each step has a patience of its own
 PART = b"G21 G90 G61 F600\nG0 Z1\nG1 Z-0.5\nG1 X6 Y2\nG2 X10 Y-2 I0 J-4\nG1 X8 Y-3\nG1 X0\nG1 Y0\nG0 Z1\nG1 X4 Y4\nG1 X0 Y0\nM2\n"
 TOOLS = "T1 P1 Z20 D6 ;end mill\nT2 P2 Z35.5 D3 ;engraver\n"
 
