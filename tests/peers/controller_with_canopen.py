@@ -10,6 +10,7 @@ import os
 import socket
 import subprocess
 import sys
+import time
 
 import packages
 
@@ -56,7 +57,7 @@ class Bench:
                 self.network.connect(**self.how)
                 return
             except (ConnectionRefusedError, OSError, can.CanError):
-                pass
+                time.sleep(0.01)
         sys.exit(f"the controller has ended: {self.run.stderr.read()}")
 
     def finish(self):

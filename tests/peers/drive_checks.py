@@ -61,6 +61,7 @@ class Drives:
         atexit.register(self.process.kill)
         self.address = None
         while self.address is None and self.process.poll() is None:
+            time.sleep(0.002)
             found = re.search(r"^0\.000000 bus (\S+)$", read("drives.log"), re.MULTILINE)
             self.address = found.group(1) if found else None
         check("the drives start", self.address is not None, self.process.poll())

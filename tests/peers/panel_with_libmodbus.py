@@ -53,6 +53,10 @@ class Panel:
         return 0 if LIBRARY.modbus_write_bit(self.context, address, on) == 1 else ctypes.get_errno() - ERROR_BASE
 
 
+def wait_until_idle(panel):
+    p.until(lambda: panel.read("input", 1, 1) == [p.IDLE], lambda: f"the state stays {panel.read('input', 1, 1)}")
+
+
 def check(panel):
     for name, row in p.REGISTERS.items():
         words = panel.read(row["table"], int(row["address"]), int(row["registers"]))
@@ -68,12 +72,10 @@ def check(panel):
     t.check(panel.read("input", 1000, 1) == 2 and panel.write(39, [1]) == 2, "what is not there: 02")
     t.check(panel.put(2, 1) == 4, "not in this state: 04")
     t.check(panel.write(300, [0x4730, 0x2058, 0x3700]) == 0 and panel.write(3, [1]) == 0 and panel.put(9, 1) == 0, "an MDI line is started")
-    while panel.read("input", 1, 1) != [p.IDLE]:
-        pass
+    wait_until_idle(panel)
     t.check(panel.read("input", 60, 2) == [0, 7000], "and runs to its end", panel.read("input", 60, 2))
     t.check(panel.write(300, [0x4730, 0x2058, 0x3000]) == 0 and panel.put(9, 1) == 0, "and back")
-    while panel.read("input", 1, 1) != [p.IDLE]:
-        pass
+    wait_until_idle(panel)
     t.check(panel.write(3, [0]) == 0, "the mode is as before")
 
 

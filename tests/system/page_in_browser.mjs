@@ -55,7 +55,8 @@ async function reset(page) {
     await page.click("#reset");
     const came = await page.waitForFunction(() => {
       const text = (id) => document.getElementById(id).textContent;
-      return text("message").startsWith("Reset: ") ? "refused" : text("state").startsWith("idle") && "idle";
+      const isIdle = text("state").startsWith("idle") && window.takt.counts("ALARM") === 0;
+      return text("message").startsWith("Reset: ") ? "refused" : isIdle && "idle";
     });
     if (await came.jsonValue() === "idle") return;
   }
@@ -65,7 +66,7 @@ async function reset(page) {
 async function jogAsThePageDoes(page, other) {
   for (;;) {
     await other.mouse.down();
-    const jogs = await page.waitForFunction(() => (window.takt.value("AXIS_FEED_X") >= 100 ? "jogs" : window.takt.counts("STATE") === 6 && "alarm"));
+    const jogs = await page.waitForFunction(() => (window.takt.value("AXIS_FEED_X") >= 100 ? "jogs" : window.takt.counts("ALARM") !== 0 && "alarm"));
     if (await jogs.jsonValue() === "jogs") return;
     await other.mouse.up();
     await reset(page);
