@@ -191,12 +191,20 @@ bool link_flush(struct link *link, uint64_t until_ns)
     return !link->broken;
 }
 
+/*
+ * A frame for a bus that has gone is lost, and not refused: it is link_wait that tells the loss,
+ * also when sending is first to meet it.
+ */
 static bool port_send(void *context, const struct can_frame *frame)
 {
     struct wire_frame wire;
     struct link *link = context;
     wire_frame_from_can(&wire, frame, link->config.data_bitrate > 0);
-    return link_send(link, &wire);
+    if (link_send(link, &wire))
+        return true;
+    if (!link->broken)
+        (void)look(link, 0);
+    return link->broken;
 }
 
 static bool port_receive(void *context, struct can_frame *frame)

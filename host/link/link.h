@@ -91,7 +91,7 @@ void link_close(
 
 /*
  * The bus as the firmware and drives see it: data frames with 11-bit identifiers; all that it sends
- * are of one kind.
+ * are of one kind. What is sent to a bus that has gone is lost: link_wait tells that.
  */
 struct can_port link_get_port(struct link *link);
 

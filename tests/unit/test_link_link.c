@@ -311,9 +311,34 @@ static void test_a_bus_whose_other_side_has_gone_is_broken(void)
     link_close(link);
 }
 
+/* Nobody has looked since the other side has gone: sending meets it first. */
+static void test_a_frame_for_a_bus_that_has_gone_is_lost_and_the_loss_is_told_by_waiting(void)
+{
+    char address[256], spec[300];
+    struct link_error error;
+    const struct can_frame frame = {.id = LAST_ID, .length = 1};
+    int status;
+    pid_t other = start_answering("slcan:listen:0", address, sizeof address);
+    (void)snprintf(spec, sizeof spec, "slcan:%s", address);
+    struct link *link = link_open(spec, &config, &error);
+    TEST_ASSERT_NOT_NULL(link);
+    const struct can_port port = link_get_port(link);
+    TEST_ASSERT_TRUE(port.send(port.context, &frame));
+    TEST_ASSERT_EQUAL_INT(other, waitpid(other, &status, 0));
+    for (int i = 0; i < 10; i++)
+        TEST_ASSERT_TRUE(port.send(port.context, &frame));
+    while (link_wait(link, link_clock_ns() + WAIT_NS) == LINK_READY) {
+        struct wire_frame answer;
+        (void)link_receive(link, &answer);
+    }
+    TEST_ASSERT_EQUAL_INT(LINK_BROKEN, link_wait(link, link_clock_ns() + WAIT_NS));
+    link_close(link);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_frame_for_a_bus_that_has_gone_is_lost_and_the_loss_is_told_by_waiting);
     RUN_TEST(test_slcan_carries_frames_over_a_pseudo_terminal);
     RUN_TEST(test_slcan_carries_frames_over_tcp);
     RUN_TEST(test_socketcand_carries_frames_between_client_and_server);
