@@ -265,11 +265,15 @@ static unsigned find_way(const struct grid *grid, struct grid_patch *patch, cons
     return patch->near_end ? hold_way(grid, patch, at, step) : 0U;
 }
 
-/* The anchor of the spline itself is where the axes are: the way from it is that of a cycle. */
+/*
+ * The anchor of the spline itself is where the axes are: the way from it is that of a cycle. It is
+ * asked whether they are outside.
+ */
 static void stand_for_spline(const struct grid *grid, struct grid_patch *patch,
                              const struct point *at)
 {
-    patch->valid = patch->near_end = false;
+    patch->valid = false;
+    patch->near_end = true;
     get_inputs(grid, at, patch->anchor_mm);
     memset(patch->way, 0, sizeof(patch->way));
 }
@@ -344,7 +348,7 @@ static void follow(const struct grid *grid, struct grid_patches *p, const struct
     p->outside = find_way(grid, used, at, step);
     const float speed = length(step);
 
-    if (speed + (float)GOING * (speed - p->speed) > grid->fastest) {
+    if (p->outside != 0 || speed + (float)GOING * (speed - p->speed) > grid->fastest) {
         give_up(grid, p, used, at);
     }
     p->speed = speed;

@@ -243,7 +243,7 @@ static struct point around(double s)
 static void test_patches_are_the_grid_to_a_few_nanometres(void)
 {
     struct grid_patches patches = {0};
-    unsigned valid = 0;
+    unsigned within = 0; /* cycles since the axes came into the table */
     double worst = 0;
 
     make_volume(wavy);
@@ -251,10 +251,10 @@ static void test_patches_are_the_grid_to_a_few_nanometres(void)
         const struct point at = around(n * 1e-4); /* 0.03 mm a cycle, through the edges as well */
 
         worst = fmax(worst, patch_error(&patches, &at));
-        valid += by_patch(&patches) ? 1 : 0;
+        within = fabs(at.at[AXIS_X] - 100) > 200 ? 0 : within + 1;
+        TEST_ASSERT_TRUE(within < 30 || by_patch(&patches));
     }
     TEST_ASSERT_TRUE(worst < 4e-6);
-    TEST_ASSERT_TRUE(valid > 199900);
 }
 
 static void test_patches_of_a_noisy_table_keep_to_their_error_at_any_speed(void)
@@ -429,7 +429,7 @@ static void test_the_need_bounds_what_following_the_table_takes(void)
 
 /*
  * The same by patches, of a noisy table, with the rounding that need counts: from slow motion to
- * the fastest.
+ * the fastest, and into the corners beyond the ends of all three inputs.
  */
 static void test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_other(void)
 {
@@ -437,7 +437,7 @@ static void test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_
     for (int slower = 0; slower < 13; slower++) {
         const double size = 1.4 * pow(0.7, slower);
         const double cycle_s = 0.001, w = (double)grid.fastest / 0.02 / cycle_s / 600 * size;
-        struct motion_bound most = {{200 * w, 190 * w, 170 * w}, {0}, {0}, {0}};
+        struct motion_bound most = {{280 * w, 250 * w, 410 * w}, {0}, {0}, {0}};
         struct grid_patches patches = {0};
         struct differences d[3] = {{.count = 0}};
         struct need need;
@@ -451,7 +451,7 @@ static void test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_
         for (int n = 0; n < 60000; n++) {
             const double t = w * n * cycle_s;
             const struct point at = {
-                {100 + 200 * sin(t), 100 + 190 * cos(0.9 * t), 90 + 100 * sin(1.7 * t)}};
+                {100 + 280 * sin(t), 100 + 275 * cos(0.9 * t), 90 + 240 * sin(1.7 * t)}};
             float k[AXIS_COUNT] = {0};
 
             (void)takt_grid_patch_add(&grid, &patches, &at, 1.0F, k);
