@@ -1,13 +1,19 @@
 #include "config/correction_file.h"
 
 #include "base/maths.h"
+#include "cli/axis_unit.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "cli/text.h"
+#include "config/correction_curve.h"
 #include "controller/controller.h"
 #include "correction/table_text.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/* mm or degrees. */
+#define POSITION_MAX 1e6
 
 static void report(const char *path, const struct diagnostic *wrong)
 {
@@ -21,6 +27,31 @@ static void report(const char *path, const struct diagnostic *wrong)
 static void set_rules(const struct machine *machine, struct table_rules *rules)
 {
     takt_correction_table_rules(&machine->correction, takt_machine_axes(machine), rules);
+}
+
+/* Positions are read on in single precision, and farther no axis goes (machine_keys.c). */
+static bool check_positions(const struct table *table, const char *path)
+{
+    for (unsigned i = 0; i < table->inputs; i++) {
+        const double *knot = table->knot_mm[i];
+        const unsigned last = table->knots[i] - 1U;
+        const unsigned far = fabs(knot[0]) > fabs(knot[last]) ? 0 : last;
+        const double ratio = axis_unit_ratio(table->input[i]);
+
+        if (fabs(knot[far]) * ratio > POSITION_MAX) {
+            message_error(path, 0, 0, "%c %.9g %s: a table goes from -%g to %g at most",
+                          AXIS_LETTERS[table->input[i]], knot[far] * ratio,
+                          axis_unit_name(table->input[i]), POSITION_MAX, POSITION_MAX);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What the firmware's own check leaves to the host: tables on a board were read here, too. */
+static bool check_further(const struct table *table, const char *path)
+{
+    return check_positions(table, path) && correction_curve_check(table, path);
 }
 
 bool correction_file_read(struct table *table, const char *path, const struct machine *machine)
@@ -37,7 +68,7 @@ bool correction_file_read(struct table *table, const char *path, const struct ma
     if (!good)
         report(path, &wrong);
     text_free(&text);
-    return good;
+    return good && check_further(table, path);
 }
 
 bool correction_file_read_triplets(struct table *table, const char *path, enum axis axis,
@@ -57,7 +88,7 @@ bool correction_file_read_triplets(struct table *table, const char *path, enum a
     if (!good)
         report(path, &wrong);
     text_free(&text);
-    return good;
+    return good && check_further(table, path);
 }
 
 static bool load_volume(struct correction_tables *tables, struct table *table,

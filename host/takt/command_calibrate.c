@@ -80,9 +80,42 @@ static bool read_noise(const char *text, double *sigma_mm)
     return true;
 }
 
+/* A table is measured, composed or converted: what would be left aside is refused. */
+static bool check_options(const struct option_correction *o)
+{
+    const struct {
+        const char *name, *other;
+        bool both;
+    } pairs[] = {
+        {"comp", "grid", o->comp != NULL && o->grid != NULL},
+        {"comp", "unit", o->comp != NULL && o->unit != NULL},
+        {"comp", "compose", o->comp != NULL && o->compose},
+        {"comp", "from", o->comp != NULL && o->from != NULL},
+        {"comp", "to", o->comp != NULL && o->to != NULL},
+        {"comp", "noise-um", o->comp != NULL && o->noise != NULL},
+        {"unit", "axis", o->unit != NULL && o->axis != NULL},
+        {"compose", "unit", o->compose && o->unit != NULL},
+        {"compose", "axis", o->compose && o->axis != NULL},
+        {"compose", "noise-um", o->compose && o->noise != NULL},
+    };
+
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        if (pairs[i].both) {
+            message_command_error("--%s and --%s: only one of them can be", pairs[i].name,
+                                  pairs[i].other);
+            return false;
+        }
+    }
+    if (o->comp == NULL && o->comp_type != 0)
+        message_command_error("--comp-type says what is in the file of --comp, which is missing");
+    return o->comp != NULL || o->comp_type == 0;
+}
+
 static enum command_status execute(struct calibration *c, const struct options *options)
 {
-    enum command_status status = session_open_machine(&c->session, options);
+    enum command_status status = check_options(&options->correction)
+                                     ? session_open_machine(&c->session, options)
+                                     : STATUS_INPUT;
 
     if (status != STATUS_DONE)
         return status;
@@ -132,7 +165,7 @@ static const struct option_row rows[] = {
      "standard deviation of the instrument, um and urad (0.1)"},
     {"seed", OPTION_NUMBER, offsetof(struct options, correction.seed), "N", "of the noise (0)"},
     {"comp", OPTION_INPUT, offsetof(struct options, correction.comp), "FILE",
-     "convert LinuxCNC's COMP_FILE of --axis instead of measuring"},
+     "convert LinuxCNC's COMP_FILE of --axis, mm or degrees, instead of measuring"},
     {"comp-type", OPTION_NUMBER, offsetof(struct options, correction.comp_type), "0|1",
      "its COMP_FILE_TYPE: 0 positions measured (default), 1 corrections"},
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",

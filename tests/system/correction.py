@@ -261,15 +261,32 @@ BROKEN = {
     "X_mm,Y_mm,KX_um\n0,0,1\n9,0,1\n0,7,1\n9,7,2000\n": "X 9 Y 7: KX: a correction of 2",
     "X_mm,Y_mm,KX_um\n0,0,1\n9,0,1\n0,7,1\n9,7,1\nchecksum,12345678\n": "the checksum is wrong",
 }
-for text, message in BROKEN.items():
-    t.write("broken.csv", text)
-    status, _, err = t.run("run", "visit.ngc", "--set", "correction.volume_table=broken.csv")
-    t.check(status == 2 and "broken.csv" in err and message in err, "a broken table is refused", message, err)
+# Between points that stand unevenly the curve may leave them far behind; and no axis goes so far that its position is not a number.
+UNEVEN = {
+    "X_mm,KY_um\n-400,0\n-120,0\n-60,20\n0,0\n400,0\n": "KY: between X -400 and -120 mm the curve through the points goes to -99.",
+    "X_mm,KX_up_um,KX_down_um\n-400,0,0\n-300,0,0\n-200,1,10\n400,0,0\n": "KX_down: between X -200 and 400 mm",
+    "X_mm,KX_um\n-1e200,1\n1e200,1\n": "X 1e+200 mm: a table goes from -1e+06 to 1e+06",
+}
+for tables, key in ((BROKEN, "volume_table"), (UNEVEN, "axis_table_x")):
+    for text, message in tables.items():
+        t.write("broken.csv", text)
+        status, _, err = t.run("run", "visit.ngc", "--set", f"correction.{key}=broken.csv")
+        t.check(status == 2 and "broken.csv" in err and message in err, "a broken table is refused", message, err)
+t.write("uneven.comp", "-400 -400 -400\n-300 -300 -300\n-200 -200.01 -200\n400 400 400\n")
+status, out, err = t.run("calibrate", "--comp", "uneven.comp", "--axis", "X")
+t.check(status == 2 and out == "" and "KX_up: between X -200 and 400 mm" in err, "so is a COMP_FILE", status, out, err)
+for points in range(2, 12):
+    rows = [f"{-400 + 800 / (points - 1) * i:.6f},{random.Random(points * 100 + i).choice((-20, 20))}" for i in range(points)]
+    status, _, err = t.run("correct", t.write("rest.ngc", "M2\n"), "--table", t.write("even.csv", "X_mm,KY_um\n" + "\n".join(rows) + "\n"))
+    t.check("curve" not in err, "points that stand evenly are good whatever they say", err)
 status, _, err = t.run("run", "visit.ngc", "--rests", "none.csv")
 t.check(status == 2 and "[geometry]" in err and not os.path.exists("none.csv"), "without errors no rests are to be told", err)
 for options, word in (((), "--grid"), (("--grid", "9x7"), "9x7x6"), (("--grid", "1x2x2"), "2 to"),
                       (("--grid", "3x3x3", "--from", "0,0"), "3 positions"), (("--grid", "3x3x3", "--to", "0,0,9000"), "travel"),
-                      (("--axis", "Q", "--grid", "4"), "--axis Q"), (("--grid", "3x3x3", "--noise-um", "x"), "--noise-um")):
+                      (("--axis", "Q", "--grid", "4"), "--axis Q"), (("--grid", "3x3x3", "--noise-um", "x"), "--noise-um"),
+                      (("--comp", "x.comp", "--axis", "X", "--grid", "5"), "--comp and --grid"), (("--comp", "x.comp", "--axis", "X", "--unit", "Y"), "--unit"),
+                      (("--axis", "X", "--unit", "Y", "--grid", "5"), "--unit and --axis"), (("--compose", "--unit", "X", "--grid", "5"), "--compose and --unit"),
+                      (("--axis", "X", "--grid", "5", "--comp-type", "1"), "--comp-type")):
     status, _, err = t.run("calibrate", *options)
     t.check(status == 2 and word in err, f"calibrate {options} is refused", err)
 status, _, err = t.run("machine", "--set", "correction.matrix_x=1 2 3")
