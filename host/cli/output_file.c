@@ -54,12 +54,26 @@ static FILE *output_file_open_aside(struct output_file *file)
     return fdopen(descriptor, "w+b");
 }
 
+/* Both exist and are the same, whatever links lead to them. */
 static bool is_same(const char *a, const char *b)
 {
     struct stat first, second;
 
-    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
-           first.st_ino == second.st_ino;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && S_ISREG(first.st_mode) &&
+           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+bool output_file_differ(const char *const option[], const char *const path[], unsigned count)
+{
+    for (unsigned i = 0; i < count; i++) {
+        for (unsigned k = 0; k < i && path[i] != NULL; k++) {
+            if (path[k] != NULL && (strcmp(path[k], path[i]) == 0 || is_same(path[k], path[i]))) {
+                message_command_error("--%s and --%s name the same file", option[k], option[i]);
+                return false;
+            }
+        }
+    }
+    return true;
 }
 
 bool output_file_may_write(const char *path)

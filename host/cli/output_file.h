@@ -28,6 +28,11 @@ bool output_file_open(struct output_file *file, const char *path);
 bool output_file_replace(struct output_file *file, const char *path, const char *over);
 /* For files that are opened by other means. False after a message: the path is one that is read. */
 bool output_file_may_write(const char *path);
+/*
+ * False after a message: two options of a command name the same file, or both standard output.
+ * path: of each option, NULL where it is not given.
+ */
+bool output_file_differ(const char *const option[], const char *const path[], unsigned count);
 /* Ends the file. False after a message: not everything could be written; it is given up. */
 bool output_file_finish(struct output_file *file);
 /* True after a message that names it: something could not be written to it so far. */

@@ -7,22 +7,9 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char *const option_names[RUN_OUTPUT_COUNT] = {
     "trace", "bus-log", "report", "json", "junit", "save-parameters", "rests", "pulse-log"};
-
-/* Both exist and are the same, whatever links lead to them. */
-static bool is_same_file(const char *a, const char *b)
-{
-    struct stat first, second;
-
-    if (a == NULL || b == NULL)
-        return false;
-    if (stat(a, &first) != 0 || stat(b, &second) != 0)
-        return strcmp(a, b) == 0;
-    return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
-}
 
 /* Parameters are read and saved in one file. */
 static const char *replaced(const struct run_outputs *o, unsigned i)
@@ -33,19 +20,6 @@ static const char *replaced(const struct run_outputs *o, unsigned i)
 static bool check_input(const struct run_outputs *o, unsigned i)
 {
     return replaced(o, i) != NULL || output_file_may_write(o->path[i]);
-}
-
-static bool check_pairs(const struct run_outputs *o, unsigned i)
-{
-    for (unsigned k = 0; k < i; k++) {
-        if (o->path[k] != NULL &&
-            (strcmp(o->path[k], o->path[i]) == 0 || is_same_file(o->path[k], o->path[i]))) {
-            message_command_error("--%s and --%s name the same file", option_names[k],
-                                  option_names[i]);
-            return false;
-        }
-    }
-    return true;
 }
 
 /* Only where the machine has errors does the tool stand elsewhere than the drives say. */
@@ -105,9 +79,11 @@ bool run_outputs_plan(struct run_outputs *o, const struct session *session)
         (options->pulse_log != NULL && !check_pulse_log(session)))
         return false;
     for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
-        if (o->path[i] != NULL && (!check_input(o, i) || !check_pairs(o, i)))
+        if (o->path[i] != NULL && !check_input(o, i))
             return false;
     }
+    if (!output_file_differ(option_names, o->path, RUN_OUTPUT_COUNT))
+        return false;
     o->each_cycle = options->trace != NULL || options->bus_log != NULL || options->report != NULL;
     return true;
 }

@@ -50,12 +50,14 @@ static bool read_centre(const char *text, struct circle_test *test)
 
 static bool set_test(struct circle_findings *found, const struct options *options)
 {
+    static const char *const outputs[] = {"output", "json"};
     const struct option_circle *given = &options->circle;
     struct circle_test *test = &found->test;
 
     test->radius_mm = given->radius > 0 ? given->radius : RADIUS_MM;
     test->feed_mm_min = given->feed > 0 ? given->feed : FEED_MM_MIN;
-    if (!read_plane(given->plane, &test->plane) || !read_centre(given->centre, test))
+    if (!output_file_differ(outputs, (const char *const[]){options->output, options->json}, 2) ||
+        !read_plane(given->plane, &test->plane) || !read_centre(given->centre, test))
         return false;
     takt_plane_axes(test->plane, &found->axis[0], &found->axis[1]);
     return true;

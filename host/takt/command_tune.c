@@ -13,15 +13,18 @@ static void (*const writers[FILES])(FILE *, const struct tune_test *) = {
     tune_findings_write_sections, tune_findings_write_dcf, tune_findings_write_json,
     tune_findings_write_report};
 
-static bool open_files(struct output_file file[FILES], const struct options *options)
+static enum command_status open_files(struct output_file file[FILES], const struct options *options)
 {
+    static const char *const option[FILES] = {"output", "dcf", "json", "report"};
     const char *const path[FILES] = {options->output, options->dcf, options->json, options->report};
 
+    if (!output_file_differ(option, path, FILES))
+        return STATUS_INPUT;
     for (unsigned i = 0; i < FILES; i++) {
         if (path[i] != NULL && !output_file_open(&file[i], path[i]))
-            return false;
+            return STATUS_ENVIRONMENT;
     }
-    return true;
+    return STATUS_DONE;
 }
 
 /* All of them or none. */
@@ -56,9 +59,9 @@ static enum command_status execute(struct tune_test *test, unsigned axes,
                                    const struct options *options)
 {
     static struct output_file file[FILES];
-    enum command_status status = STATUS_ENVIRONMENT;
+    enum command_status status = open_files(file, options);
 
-    if (open_files(file, options))
+    if (status == STATUS_DONE)
         status = tune_test_run(test, axes, options);
     for (unsigned i = 0; i < AXIS_COUNT && is_shown(file, options); i++) {
         if (test->axis[i].is_measured)

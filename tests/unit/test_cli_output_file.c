@@ -233,6 +233,18 @@ static void test_a_file_that_is_read_is_not_written_over(void)
     files_read_begin();
 }
 
+static void test_two_options_of_a_command_do_not_write_one_file(void)
+{
+    const char *const option[] = {"output", "json", "report"};
+
+    TEST_ASSERT_EQUAL(0, symlink("a", "link"));
+    TEST_ASSERT_TRUE(output_file_differ(option, (const char *const[]){"a", NULL, "new"}, 3));
+    TEST_ASSERT_FALSE(output_file_differ(option, (const char *const[]){"a", NULL, "link"}, 3));
+    TEST_ASSERT_FALSE(output_file_differ(option, (const char *const[]){NULL, "new", "new"}, 3));
+    TEST_ASSERT_FALSE(output_file_differ(option, (const char *const[]){"-", "a", "-"}, 3));
+    TEST_ASSERT_EQUAL(0, unlink("link"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -244,5 +256,6 @@ int main(void)
     RUN_TEST(test_a_file_that_is_given_up_is_not_brought_to_the_disk);
     RUN_TEST(test_what_is_no_regular_file_is_written_straight);
     RUN_TEST(test_a_file_that_is_read_is_not_written_over);
+    RUN_TEST(test_two_options_of_a_command_do_not_write_one_file);
     return UNITY_END();
 }
