@@ -78,6 +78,7 @@ static char *json_text(const struct circle_findings *found)
     cJSON_AddItemToObject(root, "centre_mm", cJSON_CreateDoubleArray(t->centre_mm, 2));
     cJSON_AddNumberToObject(root, "radius_mm", t->radius_mm);
     cJSON_AddNumberToObject(root, "feed_mm_min", t->feed_mm_min);
+    cJSON_AddNumberToObject(root, "feed_reached_mm_min", t->reached_mm_min);
     for (unsigned i = 0; i <= CIRCLE_WAYS; i++)
         cJSON_AddItemToObject(root, names[i], circle_figures_json(&found->figures[i]));
     text = cJSON_Print(root);

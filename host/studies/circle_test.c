@@ -86,8 +86,10 @@ static void see(void *context, const struct machine_setup *setup, struct simulat
     run->line = record->line;
     turned = run->turned_rad / MATHS_TWO_PI;
     if ((record->line == LINE_CCW || record->line == LINE_CW) && turned >= MEASURED &&
-        turned < MEASURED + 1)
+        turned < MEASURED + 1) {
+        t->reached_mm_min = maths_max(t->reached_mm_min, 60 * record->feed_mm_s);
         circle_turn_add(&t->turn[record->line == LINE_CCW ? CIRCLE_CCW : CIRCLE_CW], there);
+    }
 }
 
 /* False after a message: the machine has no such plane. */

@@ -16,6 +16,7 @@ struct circle_test {
     double
         centre_mm[2]; /* in the order of the plane's axes; without: the middle of their travels */
     double radius_mm, feed_mm_min;
+    double reached_mm_min;                /* the highest feed of both turns that are measured */
     struct circle_turn turn[CIRCLE_WAYS]; /* measured; the caller's to free */
 };
 

@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Less than this part of --feed is told. */
+#define FEED_PART 0.999
+
 /* When nothing is said. */
 #define RADIUS_MM   50
 #define FEED_MM_MIN 3000
@@ -81,6 +84,11 @@ static enum command_status finish(struct circle_findings *found, const struct op
     const bool has_picture = picture->stream != NULL, has_json = json->stream != NULL;
     const double deviation_mm = found->figures[CIRCLE_WAYS].deviation_mm;
 
+    if (found->test.reached_mm_min < FEED_PART * found->test.feed_mm_min)
+        message_command_warning(
+            "F%g is not reached: the limits of axes and path leave F%.6g on this "
+            "circle, and the figures are of that",
+            found->test.feed_mm_min, found->test.reached_mm_min);
     if (!options->quiet && picture->stream != stdout && json->stream != stdout)
         circle_findings_print(found);
     if (!write_files(found, picture, json) || (has_picture && !output_file_place(picture)) ||

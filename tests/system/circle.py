@@ -56,6 +56,14 @@ status, out, err = t.run("circle", "--json", "-")
 t.check(status == 0 and out.startswith("{") and err == "", "- is standard output", out[:80], err)
 t.check("circular deviation G" in t.run("circle")[1] and t.run("circle", "--quiet")[1] == "", "figures are printed, or not")
 
+# The feed that figures are of: what the limits leave of --feed on a small circle is told. v^2/R = 1000 mm/s2 is F1897 at R 1.
+status, _, err = t.run("circle", "--radius", "1", "--json", "small.json")
+reached = t.load_json("small.json")["feed_reached_mm_min"]
+t.check(status == 0 and f"F3000 is not reached: the limits of axes and path leave F{reached:.6g}" in err and 1500 < reached < 1898, "a feed that is not reached", status, err)
+t.check(abs(plain["feed_reached_mm_min"] - 3000) < 1e-6, "and one that is", plain)
+status, _, err = t.run("circle", "-o", "both", "--json", "both")
+t.check(status == 2 and "--output and --json name the same file" in err, "two outputs in one file are refused", status, err)
+
 # A tolerance for CI, and what cannot be run.
 status, _, err = t.run("circle", *RUB, "--tolerance", "0.01")
 t.check(status == 1 and "above --tolerance" in err, "beyond the tolerance: status 1", status, err)
