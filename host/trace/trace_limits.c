@@ -36,17 +36,35 @@ struct limits_watch {
     struct axis_watch axis[AXIS_COUNT];
 };
 
-static void find_axes(struct limits_watch *w, const struct machine *machine)
+/* Column of an axis, which trace and machine both have or neither has; else it is told. */
+static bool find_axis(const struct limits_watch *w, bool present, unsigned axis, int *column)
+{
+    char name[16];
+
+    (void)snprintf(name, sizeof name, "set_%c_%s", AXIS_LETTERS[axis], axis_unit_name(axis));
+    *column = trace_reader_find(w->reader, name);
+    if (*column >= 0 && !present) {
+        message_error(w->reader->name, 1, 0,
+                      "column %s: the machine has no axis %c: name the trace's own by --machine",
+                      name, AXIS_LETTERS[axis]);
+        return false;
+    }
+    if (*column < 0 && present)
+        message_warning(w->reader->name, 1, 0,
+                        "no column %s: this axis of the machine is not judged", name);
+    return true;
+}
+
+static bool find_axes(struct limits_watch *w, const struct machine *machine)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &machine->axis[i];
         double unit = axis_unit_ratio(i);
-        char name[16];
         int column;
 
-        (void)snprintf(name, sizeof name, "set_%c_%s", AXIS_LETTERS[i], axis_unit_name(i));
-        column = trace_reader_find(w->reader, name);
-        if (column < 0 || !axis->present)
+        if (!find_axis(w, axis->present, i, &column))
+            return false;
+        if (column < 0)
             continue;
         w->axis[w->axes++] = (struct axis_watch){
             .axis = i,
@@ -57,6 +75,10 @@ static void find_axes(struct limits_watch *w, const struct machine *machine)
                       {.limit = axis->max_jerk_mm_s3 * unit, .ratio = VERIFIER_JERK_RATIO}},
         };
     }
+    if (w->axes == 0)
+        message_error(w->reader->name, 1, 0,
+                      "no column set_X_mm or the like of an axis of this machine");
+    return w->axes > 0;
 }
 
 static double column_value(const struct limits_watch *w, int column)
@@ -97,15 +119,29 @@ static void watch_axis(const struct limits_watch *w, struct axis_watch *axis)
         axis->last[w->rows] = value;
 }
 
-static void watch_row(struct limits_watch *w)
+/* Rows that follow one another by a cycle each, or differences say nothing. */
+static bool watch_time(struct limits_watch *w)
 {
-    double time_s = w->reader->value[w->time];
+    const double time_s = w->reader->value[w->time];
+    const double step_s = time_s - w->last_time_s;
 
     if (w->rows == 0)
         w->first_time_s = time_s;
     if (w->rows == 1) /* whole microseconds, as cycles are */
-        w->cycle_s = takt_maths_round((time_s - w->first_time_s) * 1e6) * 1e-6;
+        w->cycle_s = takt_maths_round(step_s * 1e6) * 1e-6;
     w->last_time_s = time_s;
+    if (w->rows == 0 || (w->cycle_s > 0 && maths_abs(step_s - w->cycle_s) < 0.5 * w->cycle_s))
+        return true;
+    message_error(
+        w->reader->name, w->reader->line, 0,
+        "time_s is %.9g s behind the row before, where a cycle is %.9g s: rows are missing "
+        "or not in order",
+        step_s, w->cycle_s);
+    return false;
+}
+
+static void watch_row(struct limits_watch *w)
+{
     for (unsigned i = 0; i < w->axes; i++)
         watch_axis(w, &w->axis[i]);
     w->rows++;
@@ -153,12 +189,12 @@ enum command_status trace_check_limits(struct trace_reader *r, const struct mach
     };
     enum trace_row row;
 
-    find_axes(&w, machine);
-    if (w.axes == 0) {
-        message_error(r->name, 1, 0, "no column set_X_mm or the like of an axis of this machine");
+    if (!find_axes(&w, machine))
         return STATUS_INPUT;
-    }
-    while ((row = trace_reader_next(r)) == TRACE_ROW)
+    while ((row = trace_reader_next(r)) == TRACE_ROW) {
+        if (!watch_time(&w))
+            return STATUS_INPUT;
         watch_row(&w);
+    }
     return row == TRACE_BAD ? STATUS_INPUT : print_limits(&w);
 }

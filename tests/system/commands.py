@@ -121,6 +121,16 @@ t.check(status == 1 and "more rows" in out, "a shorter trace", out)
 status, _, err = t.run("trace", t.write("bad.csv", "\n".join(rows[:5]) + "\n1,2,x\n"))
 t.check(status == 2 and err.startswith("bad.csv:6:5: error: "), "a broken trace", err)
 t.check(t.run("trace", t.write("no.csv", "a,b\n1,2\n"))[0] == 2, "no trace at all")
+for name, text, word in (
+    ("gap.csv", rows[:9] + rows[11:], "gap.csv:10:0: error: time_s is 0.003 s behind"),
+    ("order.csv", rows[:9] + [rows[10], rows[9]] + rows[11:], "not in order"),
+    ("still.csv", [rows[0], rows[1], rows[1]], "time_s is 0 s"),
+    ("turn.csv", [rows[0].replace("set_Z_mm", "set_C_deg"), *rows[1:]], "the machine has no axis C"),
+):
+    status, out, err = t.run("trace", t.write(name, "\n".join(text) + "\n"))
+    t.check(status == 2 and out == "" and word in err, "what cannot be judged is told", name, status, out, err)
+status, out, err = t.run("trace", t.write("two.csv", "\n".join([rows[0].replace("set_Z_mm", "z"), *rows[1:]]) + "\n"))
+t.check(status == 0 and "no column set_Z_mm" in err, "an axis that is not in the trace is told", status, out, err)
 
 # Numbers that would be taken for something else are refused: ports that sockets cut to 16 bits, 0 where 0 says "not given".
 PANEL = "panel", "watch", "STATE", "--connect", "127.0.0.1:1"
