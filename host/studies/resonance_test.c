@@ -1,6 +1,7 @@
 #include "studies/resonance_test.h"
 
 #include "base/maths.h"
+#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "studies/study.h"
 
@@ -141,7 +142,8 @@ static void see(void *context, const struct machine_setup *setup, struct simulat
     run->tool_mm[1] = tool_mm;
 }
 
-static bool fit_axes(struct run *run)
+/* What Ctrl-C asks for is looked at after each: one takes some tenths of a second. */
+static enum command_status fit_axes(struct run *run)
 {
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         if ((run->axes & 1U << i) == 0)
@@ -150,10 +152,12 @@ static bool fit_axes(struct run *run)
             !run->record[i].failed && resonance_fit(&run->record[i], &run->test->fit[i]);
         if (!run->test->is_measured[i]) {
             message_command_error("out of memory");
-            return false;
+            return STATUS_ENVIRONMENT;
         }
+        if (interrupt_asked())
+            return STATUS_INTERRUPTED;
     }
-    return true;
+    return STATUS_DONE;
 }
 
 /* False after a message: an axis that is asked for cannot be measured. */
@@ -191,8 +195,8 @@ enum command_status resonance_test_run(struct resonance_test *test, unsigned axe
                                 .see = see};
     enum command_status status = study_run(&study, options);
 
-    if (status == STATUS_DONE && !fit_axes(&run))
-        status = STATUS_ENVIRONMENT;
+    if (status == STATUS_DONE)
+        status = fit_axes(&run);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         resonance_record_free(&run.record[i]);
     return status;
