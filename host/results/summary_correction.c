@@ -89,13 +89,15 @@ static void write_correction(FILE *stream, const struct summary *summary)
             (void)fprintf(stream, " %s",
                           takt_correction_layer_name((enum correction_layer_number)i));
     }
-    (void)fprintf(stream, ", %.4g mm at most; it cost\n", summary->figures.correction_mm);
+    (void)fprintf(stream, ", %.4g mm at most; of each axis, and what it cost\n",
+                  summary->figures.correction_mm);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         double ratio = axis_unit_ratio(i);
 
         if (summary->machine->axis[i].present)
-            (void)fprintf(stream, "                %c %.3g %s/s, %.3g %s/s2, %.3g %s/s3\n",
-                          AXIS_LETTERS[i], watch->max_velocity_mm_s[i] * ratio, axis_unit_name(i),
+            (void)fprintf(stream, "                %c %.3g %s, %.3g %s/s, %.3g %s/s2, %.3g %s/s3\n",
+                          AXIS_LETTERS[i], watch->max_mm[i] * ratio, axis_unit_name(i),
+                          watch->max_velocity_mm_s[i] * ratio, axis_unit_name(i),
                           watch->max_acceleration_mm_s2[i] * ratio, axis_unit_name(i),
                           watch->max_jerk_mm_s3[i] * ratio, axis_unit_name(i));
     }

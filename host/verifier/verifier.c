@@ -244,6 +244,16 @@ static bool verify_tube(struct verifier *j, const struct cycle_record *record)
     return tube_verifier_add(&j->tube, &place, record->block);
 }
 
+/* Of X, Y and Z: that of a rotary axis is an angle. */
+static double corrected_mm(const struct cycle_record *record)
+{
+    struct point set = record->cmd;
+
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        set.at[i] = record->set.at[i];
+    return verifier_distance(&record->cmd, &set);
+}
+
 bool verifier_add(struct verifier *j, const struct cycle_record *record, const struct block *block)
 {
     if (record->block != j->block.number && !j->strayed)
@@ -260,7 +270,7 @@ bool verifier_add(struct verifier *j, const struct cycle_record *record, const s
         verify_path(j, record);
     verify_feed(j, record);
     verify_axes(j, record);
-    raise_to(&j->figures.correction_mm, verifier_distance(&record->cmd, &record->set));
+    raise_to(&j->figures.correction_mm, corrected_mm(record));
     j->cmd = record->cmd;
     j->figures.cycles++;
     return verify_tube(j, record);

@@ -53,7 +53,7 @@ struct verifier_figures {
     double junction_feed_step_mm_s;
     double smoothed_path_part; /* of motions within a tolerance: as a part of it */
     double smoothed_corner_part;
-    double correction_mm; /* largest distance between setpoint before and after correction */
+    double correction_mm; /* largest distance of X, Y, Z before and after correction */
     uint64_t digest;
 };
 

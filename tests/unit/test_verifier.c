@@ -107,6 +107,16 @@ static void test_the_history_goes_on_from_block_to_block(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 5e5, verifier.figures.acceleration_mm_s2[AXIS_X]);
 }
 
+static void test_the_correction_of_a_rotary_axis_is_no_length(void)
+{
+    begin("G0 X1\n");
+    record.set.at[AXIS_X] = 0.003;
+    record.set.at[AXIS_Z] = 0.004;
+    record.set.at[AXIS_C] = 0.1;
+    verifier_add(&verifier, &record, &executed);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.005, verifier.figures.correction_mm);
+}
+
 /* 20 mm deep at 1 mm: turned 0.05 above the bottom, and 0.5 above it. */
 static void test_a_tap_may_turn_back_just_above_its_bottom(void)
 {
@@ -408,6 +418,7 @@ int main(void)
     RUN_TEST(test_a_tap_may_turn_back_just_above_its_bottom);
     RUN_TEST(test_velocity_acceleration_and_jerk_are_differences_from_standstill);
     RUN_TEST(test_the_history_goes_on_from_block_to_block);
+    RUN_TEST(test_the_correction_of_a_rotary_axis_is_no_length);
     RUN_TEST(test_a_setpoint_beside_a_line_is_seen);
     RUN_TEST(test_a_setpoint_beyond_the_end_of_a_line_is_seen);
     RUN_TEST(test_a_setpoint_beside_an_arc_is_seen);
