@@ -39,9 +39,13 @@ static bool use_table(struct session *session, const char *path)
     return correction_file_load(&session->correction, setup);
 }
 
-static void print_warnings(const char *name, double tolerance_mm,
+static void print_warnings(const char *name, double tolerance_mm, bool has_tables,
                            const struct offline_totals *totals)
 {
+    if (!has_tables && totals->motions > 0 && !(totals->largest_mm > 0))
+        message_warning(name, 0, 0,
+                        "nothing is corrected: name a table by --table, or what corrects in "
+                        "[correction] of the machine file");
     if (totals->compensated)
         message_warning(name, 0, 0,
                         "contours with G41 or G42 are corrected as programmed, not where the "
@@ -58,7 +62,7 @@ static void print_warnings(const char *name, double tolerance_mm,
 static void print_totals(const struct options *options, const struct offline_config *config,
                          const struct offline_totals *totals)
 {
-    print_warnings(config->name, config->tolerance_mm, totals);
+    print_warnings(config->name, config->tolerance_mm, config->session->correction != NULL, totals);
     if (options->quiet)
         return;
     (void)fprintf(stderr,
@@ -151,7 +155,7 @@ static enum command_status command_correct_execute(const struct options *options
 static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
     {"table", OPTION_INPUT, offsetof(struct options, correction.table), "FILE",
-     "correction table, CSV; in addition to the machine file"},
+     "correction table, CSV; in the place of the machine file's of its kind, beside all others"},
     {"tolerance", OPTION_TEXT, offsetof(struct options, correction.tolerance), "MM",
      "distance of the written path from the corrected one (0.0005)"},
     {"filter", OPTION_FLAG, offsetof(struct options, correction.filter), NULL,

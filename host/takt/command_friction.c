@@ -18,7 +18,7 @@ static void write_axis(FILE *file, const struct friction_axis *f, unsigned axis)
     const bool is_rotary = axis >= AXIS_LINEAR_COUNT;
     const double unit = is_rotary ? 180 / MATHS_PI : 1;
 
-    (void)fprintf(file, "# axis %c; mean of both ways:", AXIS_LETTERS[axis]);
+    (void)fprintf(file, "# axis %c; mean of both ways, Nm:", AXIS_LETTERS[axis]);
     write_numbers(file, f->offset_nm, FRICTION_VELOCITIES, 1);
     if (f->bus > 0)
         (void)fprintf(file, "[drive %u:%u]\n", f->bus, f->node);

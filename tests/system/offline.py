@@ -129,5 +129,7 @@ for options, part in (
     status, out, err = t.run("correct", "part.ngc", *options)
     t.check(status == 2 and part in err and out == "", f"{options} is refused", status, err)
 t.check(t.run("correct")[0] == 2, "a program is needed")
+status, out, err = t.run("correct", t.write("bare.ngc", "G1 F100 X5\nM2\n"))
+t.check(status == 0 and "warning: nothing is corrected: name a table by --table" in err, "a program that nothing corrects is told", status, err)
 
 t.finish()
