@@ -86,12 +86,14 @@ static bool options_set_count(const struct option_row *row, uint32_t *field, con
 {
     char *end;
     double count = strtod(value, &end);
+    const uint32_t least = row->kind == OPTION_WHOLE ? 0 : 1;
 
-    if (end == value || *end != '\0' || !(count >= 1 && count <= UINT32_MAX) ||
+    if (end == value || *end != '\0' || !(count >= least && count <= UINT32_MAX) ||
         count != floor(count)) {
         message_command_error("--%s %s: %s is expected", row->name, value,
-                              row->kind == OPTION_LINE ? "the number of a line"
-                                                       : "a whole number from 1 on");
+                              row->kind == OPTION_LINE    ? "the number of a line"
+                              : row->kind == OPTION_COUNT ? "a whole number from 1 on"
+                                                          : "a whole number from 0 on");
         return false;
     }
     *field = (uint32_t)count;
@@ -118,6 +120,7 @@ static bool options_set(struct options *options, const struct option_row *row, c
         return options_set_positive(row, field, value);
     case OPTION_LINE:
     case OPTION_COUNT:
+    case OPTION_WHOLE:
         return options_set_count(row, field, value);
     }
     return false;
@@ -175,7 +178,8 @@ static void options_fill_table(const struct option_row *rows, struct option *tab
         [OPTION_FLAG] = no_argument,         [OPTION_TEXT] = required_argument,
         [OPTION_INPUT] = required_argument,  [OPTION_LIST] = required_argument,
         [OPTION_NUMBER] = required_argument, [OPTION_POSITIVE] = required_argument,
-        [OPTION_LINE] = required_argument,   [OPTION_COUNT] = required_argument};
+        [OPTION_LINE] = required_argument,   [OPTION_COUNT] = required_argument,
+        [OPTION_WHOLE] = required_argument};
     unsigned count = options_count(rows);
 
     for (unsigned i = 0; i < count; i++)

@@ -69,7 +69,7 @@ struct option_pack {
 /* For `takt calibrate`, `takt correct` and, of noise and seed, `takt resonance`. */
 struct option_correction {
     const char *grid, *axis, *unit, *from, *to, *noise, *comp, *table, *tolerance;
-    double seed, comp_type;
+    uint32_t seed, comp_type;
     bool filter, compose;
 };
 
@@ -128,7 +128,7 @@ struct options {
     bool fast, fd;
     const char *inject; /* scripted faults */
     const char *nodes;  /* of `takt drives` */
-    double can;         /* index of the bus that they are on */
+    uint32_t can;       /* index of the bus that they are on */
     const char *eds;
     const char *store; /* folder */
     bool unconfigured;
@@ -149,7 +149,8 @@ enum option_kind {
     OPTION_NUMBER,   /* double, >= 0 */
     OPTION_POSITIVE, /* double, > 0: 0 says that it is not given */
     OPTION_LINE,     /* uint32_t, >= 1: the number of a line */
-    OPTION_COUNT     /* uint32_t, >= 1 */
+    OPTION_COUNT,    /* uint32_t, >= 1 */
+    OPTION_WHOLE     /* uint32_t, >= 0 */
 };
 
 struct option_row {

@@ -58,8 +58,7 @@ static enum command_status convert(struct calibration *c, const struct options *
         return STATUS_INPUT;
     }
     if (!correction_file_read_triplets(&c->table, options->correction.comp, axis,
-                                       (unsigned)options->correction.comp_type,
-                                       &c->session.setup.machine))
+                                       options->correction.comp_type, &c->session.setup.machine))
         return STATUS_INPUT;
     return write_result(c, options);
 }
@@ -121,7 +120,7 @@ static enum command_status execute(struct calibration *c, const struct options *
         return status;
     if (!read_noise(options->correction.noise, &c->instrument.sigma))
         return STATUS_INPUT;
-    c->instrument.state = UINT64_C(0x9E3779B97F4A7C15) * (1 + (uint64_t)options->correction.seed);
+    c->instrument.state = UINT64_C(0x9E3779B97F4A7C15) * (UINT64_C(1) + options->correction.seed);
     if (options->correction.comp != NULL)
         return convert(c, options);
     if (options->correction.grid == NULL) {
@@ -163,10 +162,10 @@ static const struct option_row rows[] = {
      "last point (default: where it ends)"},
     {"noise-um", OPTION_TEXT, offsetof(struct options, correction.noise), "UM",
      "standard deviation of the instrument, um and urad (0.1)"},
-    {"seed", OPTION_NUMBER, offsetof(struct options, correction.seed), "N", "of the noise (0)"},
+    {"seed", OPTION_WHOLE, offsetof(struct options, correction.seed), "N", "of the noise (0)"},
     {"comp", OPTION_INPUT, offsetof(struct options, correction.comp), "FILE",
      "convert LinuxCNC's COMP_FILE of --axis, mm or degrees, instead of measuring"},
-    {"comp-type", OPTION_NUMBER, offsetof(struct options, correction.comp_type), "0|1",
+    {"comp-type", OPTION_WHOLE, offsetof(struct options, correction.comp_type), "0|1",
      "its COMP_FILE_TYPE: 0 positions measured (default), 1 corrections"},
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
      "or -o FILE: the table (default: standard output)"},

@@ -164,7 +164,7 @@ static const struct option_row rows[] = {
      "unit of the spindle on its serial line (default 1)"},
     {"nodes", OPTION_TEXT, offsetof(struct options, nodes), "LIST",
      "node ids, 1-3 or 1,2,5 (default: those of the machine's axes)"},
-    {"can", OPTION_NUMBER, offsetof(struct options, can), "N",
+    {"can", OPTION_WHOLE, offsetof(struct options, can), "N",
      "which bus of the machine this is: 0 (default) or 1; each has a process of its own"},
     OPTIONS_MACHINE,
     {"eds", OPTION_TEXT, offsetof(struct options, eds), "FILE|FOLDER",

@@ -92,8 +92,7 @@ static enum command_status command_resonance_execute(const struct options *optio
     enum command_status status = STATUS_INPUT;
     unsigned axes;
 
-    test = (struct resonance_test){.noise_mm_s2 = NOISE_MM_S2,
-                                   .seed = (uint32_t)options->correction.seed};
+    test = (struct resonance_test){.noise_mm_s2 = NOISE_MM_S2, .seed = options->correction.seed};
     if (axis_letters_read(options->axes, &axes) &&
         read_noise(options->correction.noise, &test.noise_mm_s2))
         status = resonance_test_run(&test, axes, options);
@@ -106,7 +105,7 @@ static const struct option_row rows[] = {
      "XY, say (default: all linear ones with a drive on CAN)"},
     {"noise", OPTION_TEXT, offsetof(struct options, correction.noise), "MM/S2",
      "of the accelerometer, standard deviation (20)"},
-    {"seed", OPTION_NUMBER, offsetof(struct options, correction.seed), "N",
+    {"seed", OPTION_WHOLE, offsetof(struct options, correction.seed), "N",
      "of moves and noise (0)"},
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
      "or -o FILE: the section (default: standard output)"},

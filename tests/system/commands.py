@@ -147,6 +147,10 @@ for words, *arguments in (
     ("--count 1.5: a whole number from 1 on", *PANEL, "--count", "1.5"),
     ("--count 0: a whole number from 1 on", *PANEL, "--count", "0"),
     ("--interval 0", *PANEL, "--interval", "0"),
+    ("--seed 1e20: a whole number from 0 on", "calibrate", "--grid", "3x3x3", "--seed", "1e20"),
+    ("--seed 0.5: a whole number from 0 on", "resonance", "--seed", "0.5"),
+    ("--comp-type 0.5: a whole number from 0 on", "calibrate", "--comp", "x.comp", "--axis", "X", "--comp-type", "0.5"),
+    ("--can 0.5: a whole number from 0 on", "drives", "--can", "0.5"),
 ):
     status, _, err = t.run(*arguments)
     t.check(status == 2 and words in err, "refused with a reason", arguments, status, err)
