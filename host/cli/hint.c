@@ -43,7 +43,7 @@ static const struct hint hints[] = {
     {TAKT_ERROR_DWELL_MISSING, "G4 P0.5 waits for half a second"},
     {TAKT_ERROR_OWORD_UNCLOSED, "its end has the same number or name: o1 if ... o1 endif"},
     {TAKT_ERROR_CIRCLE, "what its condition asks for never changes"},
-    {TAKT_ERROR_LINE_TOO_LONG, "make two lines of it; comments do not count"},
+    {TAKT_ERROR_LINE_TOO_LONG, "make two lines of it; a comment at its end does not count"},
     {TAKT_ERROR_SPINDLE_NO_ENCODER, "encoder_counts in [spindle] of the machine file"},
 };
 

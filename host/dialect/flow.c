@@ -16,7 +16,7 @@
 
 #define LOOP_LABEL 91000000U
 #define IF_LABEL   92000000U
-#define TEXT_MAX   1024
+#define TEXT_MAX   (LINE_MAX_BYTES + 1)
 
 /* Numbers that a jump may go to. */
 static void survey_target(struct survey *s, uint32_t number)

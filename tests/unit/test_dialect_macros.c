@@ -35,6 +35,15 @@ static void test_loops_that_do_not_match_are_told_by_their_own_names(void)
     wrong("WHILE #1 LT 3 DO1\nEND1\n", 1, "WHILE needs a condition in brackets");
 }
 
+static void test_what_stands_far_behind_an_if_is_kept(void)
+{
+    char from[2048], to[2100];
+
+    (void)snprintf(from, sizeof from, "IF [#1 EQ 1] THEN %1500s #2=3\n", "");
+    (void)snprintf(to, sizeof to, "o92000001 if [#1 EQ 1]\n| %1500s #2=3\n|o92000001 endif\n", "");
+    expect(DIALECT_FANUC, from, to);
+}
+
 static void test_a_jump_can_go_to_the_number_that_is_worked_out(void)
 {
     expect(DIALECT_FANUC, "GOTO #1\nN5\nN6\nN5\n",
@@ -103,6 +112,7 @@ int main(void)
     RUN_TEST(test_calculations_are_bracketed_wherever_they_stand);
     RUN_TEST(test_operations_on_bits_are_told);
     RUN_TEST(test_loops_that_do_not_match_are_told_by_their_own_names);
+    RUN_TEST(test_what_stands_far_behind_an_if_is_kept);
     RUN_TEST(test_a_jump_can_go_to_the_number_that_is_worked_out);
     RUN_TEST(test_numbers_stand_behind_slashes_and_comments);
     RUN_TEST(test_what_one_line_becomes_is_left_out_with_it);
