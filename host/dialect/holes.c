@@ -56,7 +56,6 @@ static void write_peck(struct line *l)
  */
 static bool read_meaning(const struct translator *t, bool *distance)
 {
-    *distance = false;
     for (unsigned i = 0; i < t->codes->count; i++) {
         if (t->codes->code[i].letter == 'r') {
             *distance = t->codes->code[i].use == DIALECT_DISTANCE;
@@ -89,7 +88,7 @@ static void give_height(struct translator *t)
 {
     struct line *l = &t->line;
     const bool incremental = is_incremental(t);
-    bool distance;
+    bool distance = false;
 
     if (line_find(l, 'z', 0) == NULL ||
         (t->survey.lathe && !read_meaning(t, &distance) && line_find(l, 'r', 0) != NULL))
