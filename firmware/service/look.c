@@ -226,7 +226,7 @@ static void look_at_settings(const struct service *s, uint32_t *value)
 
     SERVICE_SETTINGS(LOOK_AT_FIELD)
     SERVICE_SWITCHES(LOOK_AT_FIELD)
-    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++)
+    for (unsigned i = 0; i < SERVICE_LAYER_COILS; i++)
         value[REGISTER_CORRECTION_MATRIX + i] = settings->corrections >> i & 1U;
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value[REGISTER_RISE_X + i] = (uint32_t)settings->rise[i];

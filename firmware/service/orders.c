@@ -8,8 +8,9 @@
 #include "program/parameters.h"
 #include "service/service_private.h"
 
-_Static_assert(REGISTER_CORRECTION_WEAR - REGISTER_CORRECTION_MATRIX + 1 == CORRECTION_LAYERS_COUNT,
-               "a coil for each layer, in their order");
+_Static_assert(SERVICE_LAYER_COILS <= CORRECTION_LAYERS_COUNT &&
+                   CORRECTION_WEAR + 1 == SERVICE_LAYER_COILS,
+               "coils for the first layers, in their order");
 
 #define RAD_PER_DEGREE (MATHS_PI / 180.0)
 

@@ -6,6 +6,9 @@
 
 #include "service/service.h"
 
+/* Layers of correction that have a coil: the first ones. */
+#define SERVICE_LAYER_COILS (REGISTER_CORRECTION_WEAR - REGISTER_CORRECTION_MATRIX + 1)
+
 /*
  * service_jobs.c: starting and ending what runs. False: there is no program, or it would leave the
  * travel.

@@ -3,6 +3,7 @@
 #include "bus/bus.h"
 #include "classic/interpolator.h"
 #include "classic/limiter.h"
+#include "correction/layers.h"
 
 #define IN_SETUP(field)   offsetof(struct machine_setup, field)
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
@@ -400,7 +401,7 @@ const struct machine_key machine_keys[] = {
     OF_KNOWN("tool_mm", SCALE_NONE, tool_mm, "from spindle nose to tool point: the arm of the turns of units"),
     OF_KNOWN("turn_centre_mm", SCALE_NONE, centre_mm, "a point of the turning axis, about which the turns of its unit act"),
     CHOICE(SECTION_CORRECTION, "off", KEY_LAYERS, IN_SETUP(machine.correction.off),
-           "layers that are off until switched on: matrix setup axes volume thermal wear"),
+           "layers that are off until switched on:" CORRECTION_LAYER_WORDS),
     CHOICE(SECTION_CORRECTION, "turn_axis", KEY_AXIS, IN_SETUP(machine.correction.turn_axis),
            "rotary axis that turns the part, the fourth coordinate of matrix and set-up; none"),
     OF_CORRECTION("matrix_x", SCALE_NONE, machine[0], 4, "added to X per mm of X, Y, Z and rad of the turning axis"),
