@@ -248,16 +248,36 @@ static void write_vector(const struct value_place *at, const void *field, char *
 
 /* ---- words ---- */
 
+/* Up to what no line of a machine file can hold: control characters, and a comment. */
+static size_t text_length(const char *value)
+{
+    size_t i = 0;
+
+    while (((unsigned char)value[i] >= ' ' || value[i] == '\t') &&
+           !(value[i] == ';' && (i == 0 || isblank((unsigned char)value[i - 1]))))
+        i++;
+    return i;
+}
+
 static bool read_text(const struct value_place *at, void *field, const char *value,
                       struct machine_problem *wrong)
 {
+    const char *begin = value + strspn(value, " \t");
     const size_t size = at->key->size;
+    size_t length = text_length(begin);
 
-    if (strlen(value) >= size) {
+    if (begin[length] != '\0') {
+        machine_problem_say(wrong, "%s: neither ' ;' nor control characters can stand in it",
+                            at->key->name);
+        return false;
+    }
+    while (length > 0 && isblank((unsigned char)begin[length - 1]))
+        length--;
+    if (length >= size) {
         machine_problem_say(wrong, "%s: longer than %zu characters", at->key->name, size - 1);
         return false;
     }
-    (void)snprintf(field, size, "%s", value);
+    (void)snprintf(field, size, "%.*s", (int)length, begin);
     return true;
 }
 
@@ -372,9 +392,8 @@ static bool read_layers(const struct value_place *at, void *field, const char *v
                         length) != 0))
             i++;
         if (i == CORRECTION_LAYERS_COUNT) {
-            machine_problem_say(
-                wrong, "%s: there is no layer '%.*s': matrix setup axes volume thermal wear",
-                at->key->name, (int)(length < 40 ? length : 40), value);
+            machine_problem_say(wrong, "%s: there is no layer '%.*s':" CORRECTION_LAYER_WORDS,
+                                at->key->name, (int)(length < 40 ? length : 40), value);
             return false;
         }
         layers |= 1U << i;

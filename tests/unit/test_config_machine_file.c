@@ -128,6 +128,18 @@ static void test_a_refused_value_changes_nothing(void)
     TEST_ASSERT_EQUAL_DOUBLE(20000, setup.machine.axis[AXIS_X].max_jerk_mm_s3);
 }
 
+static void test_a_text_that_no_line_of_a_file_holds_is_refused(void)
+{
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "machine.name= a;b # [c] = d\t"));
+    TEST_ASSERT_EQUAL_STRING("a;b # [c] = d", setup.machine.name);
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "machine.name=a\n[axis A]"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "machine.name=a\rb"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "machine.name=a ; b"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "machine.name= ;"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "machine.tool_table=a\nb"));
+    TEST_ASSERT_EQUAL_STRING("a;b # [c] = d", setup.machine.name);
+}
+
 static void test_every_key_refuses_what_is_below_and_above_its_range(void)
 {
     struct machine_problem wrong;
@@ -266,6 +278,7 @@ int main(void)
     RUN_TEST(test_a_file_that_names_no_axis_keeps_the_default_ones);
     RUN_TEST(test_rotary_values_are_degrees_outside_and_radians_inside);
     RUN_TEST(test_a_refused_value_changes_nothing);
+    RUN_TEST(test_a_text_that_no_line_of_a_file_holds_is_refused);
     RUN_TEST(test_every_key_refuses_what_is_below_and_above_its_range);
     RUN_TEST(test_the_checks_of_the_whole_machine);
     RUN_TEST(test_limits_below_the_rounding_of_setpoints_are_refused);
