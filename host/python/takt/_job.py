@@ -52,6 +52,7 @@ class Job:
     ) -> None:
         self._lib = (library or load()).functions
         self._lock = threading.RLock()
+        self._told = 0  # messages that an exception has brought
         argv = [ffi.new("char[]", _word(word)) for word in words]
         names = {name: (ffi.new("char[]", name.encode()), text) for name, text in texts.items()}
         held = [(name, ffi.from_buffer(text), len(text)) for name, text in names.values()]
@@ -98,10 +99,16 @@ class Job:
             found = lib.takt_get_text(c, length)
             return bytes(ffi.buffer(found, length[0]))
 
+    def untold(self) -> tuple[Message, ...]:
+        """For an exception: messages that no exception before has brought."""
+        messages = self.messages
+        told, self._told = self._told, len(messages)
+        return messages[told:]
+
     def require(self, status: int) -> None:
         """Raises unless the status is that of success."""
         if status != DONE:
-            raise error_of(status, self.messages)
+            raise error_of(status, self.untold())
 
     def write(self) -> bytes:
         """The output of a command that writes a text."""

@@ -333,7 +333,7 @@ class Simulation:
             for name, value in values.items():
                 setattr(inputs, name, value)
             if lib.takt_set_inputs(c, inputs) == INPUT:
-                raise ValueError(self._job.messages[-1].text)
+                raise ValueError(self._job.untold()[-1].text)
 
     @property
     def feed_override(self) -> float:

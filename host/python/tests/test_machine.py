@@ -26,6 +26,14 @@ def test_a_wrong_key_is_refused_and_changes_nothing():
     assert mill.text == before
 
 
+def test_a_text_that_no_file_can_hold_is_refused():
+    mill = takt.Machine()
+    for name in ("a\n[axis A]", "a ; b"):
+        with pytest.raises(takt.InputError, match="name"):
+            mill["machine.name"] = name
+    assert mill.text == takt.Machine().text
+
+
 def test_its_text_is_the_same_machine():
     mill = takt.Machine(None, {"axis.Y.max_acceleration_mm_s2": 0.1 + 0.2 + 500})
     for again in (takt.Machine(mill.text), takt.Machine(mill), pickle.loads(pickle.dumps(mill))):

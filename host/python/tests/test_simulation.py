@@ -196,6 +196,18 @@ def test_what_would_be_lost_in_silence_is_an_error():
             copied(sim)
 
 
+def test_an_error_tells_of_its_own_call_alone():
+    sim = takt.Simulation(SHORT)
+    with pytest.raises(ValueError, match="500"):
+        sim.feed_override = 500
+    with pytest.raises(takt.InputError, match="jamm") as raised:
+        sim.inject("power drive 1 jamm\n")
+    assert raised.value.line == 1 and len(raised.value.messages) == 1
+    with pytest.raises(takt.InputError, match="mute_"):
+        sim.inject("\npower drive 1 mute_\n")
+    assert [m.line for m in sim.messages] == [0, 1, 2]
+
+
 def test_objects_take_what_fits_alone():
     drive = takt.Simulation(SHORT).drives[1]
     for index in (0x16065, 1 << 16):
