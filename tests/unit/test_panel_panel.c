@@ -92,14 +92,25 @@ static void test_the_text_of_an_alarm_is_read_two_characters_a_word(void)
     TEST_ASSERT_EQUAL_STRING("axis X lags", (const char *)data);
 }
 
+/* Of a table, from this address on: the first that is no row's. */
+static uint16_t free_address(enum modbus_table table, uint16_t address)
+{
+    while (takt_panel_find(table, address) != REGISTER_COUNT)
+        address++;
+    return address;
+}
+
 static void test_addresses_that_are_not_there_are_exception_2(void)
 {
     const struct modbus_map map = takt_panel_client_map(&one);
+    const uint16_t coil =
+        free_address(MODBUS_COILS, takt_panel_registers[REGISTER_SETUP_TAKE].address);
+    const uint16_t gap = free_address(MODBUS_HOLDINGS, 0);
 
-    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 26, 1, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, coil, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 399, 2, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_HOLDINGS, 420, 1, data));
-    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_HOLDINGS, 39, 1, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_HOLDINGS, gap, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_INPUTS, 0, 1, data));
     TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_ADDRESS, value_of(&one, REGISTER_REFUSAL));
     TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_NONE, value_of(&other, REGISTER_REFUSAL));
