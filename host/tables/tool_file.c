@@ -56,9 +56,15 @@ static bool set_word(struct tool *tool, char letter, double value)
     return strchr("TDPIJQUVW", letter) != NULL;
 }
 
-/* One word at line[*offset]; false after a message. */
+/* Bit of a letter from A to Z. */
+static uint32_t letter_bit(char letter)
+{
+    return 1U << (letter - 'A');
+}
+
+/* One word at line[*offset]; false after a message. given: letters of the line so far. */
 static bool read_word(struct tool_reader *r, const char *line, size_t *offset, struct tool *tool,
-                      bool *numbered)
+                      uint32_t *given)
 {
     char letter = (char)toupper((unsigned char)line[*offset]);
     const char *start = line + *offset + 1;
@@ -81,7 +87,11 @@ static bool read_word(struct tool_reader *r, const char *line, size_t *offset, s
         tool_error(r, *offset, "unknown word; known are T P X Y Z A B C U V W D I J Q");
         return false;
     }
-    *numbered = *numbered || letter == 'T';
+    if ((*given & letter_bit(letter)) != 0) {
+        tool_error(r, *offset, "this letter stands on the line already");
+        return false;
+    }
+    *given |= letter_bit(letter);
     *offset = (size_t)(end - line);
     return true;
 }
@@ -109,17 +119,17 @@ static bool keep_tool(struct tool_reader *r, const struct tool *tool)
 static void read_tool(struct tool_reader *r, const char *line)
 {
     struct tool tool = {0};
-    bool numbered = false;
+    uint32_t given = 0;
     size_t offset = strspn(line, " \t");
 
     if (line[offset] == '\0' || line[offset] == ';')
         return;
     while (line[offset] != '\0' && line[offset] != ';') {
-        if (!read_word(r, line, &offset, &tool, &numbered))
+        if (!read_word(r, line, &offset, &tool, &given))
             return;
         offset += strspn(line + offset, " \t");
     }
-    if (!numbered)
+    if ((given & letter_bit('T')) == 0)
         tool_error(r, 0, "the tool's number is missing: T");
     else if (is_known(r, tool.number))
         tool_error(r, 0, "this tool is already in the table");

@@ -72,9 +72,10 @@ static void test_a_tool_table_is_read_as_linuxcnc_writes_it(void)
 
 static void test_a_tool_table_with_a_mistake_is_refused(void)
 {
-    static const char *const bad[] = {"T1 Z\n",        "Z5\n",     "T1.5 Z1\n", "T1 Z1\nT1 Z2\n",
-                                      "T1 R5\n",       "T-1 Z1\n", "T1 Znan\n", "5\n",
-                                      "T1 Z1 extra\n", "T1 Q10\n", "T1 Q-1\n",  "T1 Q0.5\n"};
+    static const char *const bad[] = {"T1 Z\n",        "Z5\n",      "T1.5 Z1\n", "T1 Z1\nT1 Z2\n",
+                                      "T1 R5\n",       "T-1 Z1\n",  "T1 Znan\n", "5\n",
+                                      "T1 Z1 extra\n", "T1 Q10\n",  "T1 Q-1\n",  "T1 Q0.5\n",
+                                      "T1 Z10 Z11\n",  "T1 z1 T2\n"};
     struct tool_file file;
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
