@@ -210,3 +210,10 @@ def test_the_module_is_the_command(tmp_path):
     assert "usage: takt run" in takt_command("run", "--help").stdout
     assert takt_command("run", "nowhere.ngc").returncode == 2
     assert takt_command("serve").returncode == 2
+
+
+def test_a_campaign_without_its_packages_says_what_to_install():
+    code = "import runpy, sys; sys.modules['pyarrow'] = None; runpy.run_module('takt.campaign', run_name='__main__')"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ended.returncode == 2 and ended.stderr.startswith("takt-campaign: not installed: ")
+    assert "pyarrow" in ended.stderr and ended.stderr.count("\n") == 1

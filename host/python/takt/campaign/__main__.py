@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import Library, load
+from . import _needs  # noqa: F401  before what needs them
 from .compare import Change, Judge, compare, difference_of, worse_of
 from .engine import BATCH, Costs, run_missing
 from .report import campaign_page, comparison_page, worst, write_runs
