@@ -51,4 +51,6 @@ def load(path: str | None = None) -> Library:
     """Loads the package's own library, or the one at ``path``; several may be loaded side by side."""
     given = path or os.environ.get("TAKT_LIBRARY") or str(HERE / "libtakt.so")
     file = Path(given).resolve()
-    return Library(ffi.dlopen(str(file)), hashlib.sha256(file.read_bytes()).hexdigest(), file)
+    # Never unloaded: at the end of Python what it has made may be freed after it.
+    functions = ffi.dlopen(str(file), ffi.RTLD_NOW | getattr(ffi, "RTLD_NODELETE", 0))
+    return Library(functions, hashlib.sha256(file.read_bytes()).hexdigest(), file)
