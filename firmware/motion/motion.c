@@ -411,13 +411,14 @@ static void fill_record(struct motion *m, const struct block *b, struct cycle_re
 
 /*
  * A part of the block behind, in a cycle that has little else to do: the one that comes to it need
- * not read it.
+ * not read it. Not while a hold keeps what follows the motion that has ended: it would take that
+ * one's place.
  */
 static void read_ahead(struct motion *m)
 {
-    const uint32_t next = m->path->first + 1;
+    const uint32_t next = m->current + 1;
 
-    if (!m->busy && m->passed_first == m->path->first && (int32_t)(m->path->closed - next) > 0) {
+    if (!m->busy && m->passed_first == m->current && (int32_t)(m->path->closed - next) > 0) {
         path_prepare(m->path, next);
     }
 }

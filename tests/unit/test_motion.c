@@ -427,6 +427,27 @@ static void test_in_a_hold_no_tool_change_begins(void)
     TEST_ASSERT_TRUE(motion.changes_tool);
 }
 
+/* Behind an event that a hold keeps, the next motion is not read into the record of the last one. */
+static void test_a_hold_at_a_stop_tells_the_motion_that_has_ended(void)
+{
+    push(MOVE_FEED, 1.0, 20.0);
+    push(MOVE_COOLANT, 0.0, 0.0);
+    push(MOVE_FEED, 2.0, 20.0);
+    push_end();
+    do {
+        cycles(1);
+    } while (!motion.done);
+    asked.hold = MOTION_HOLD_ASKED;
+    for (unsigned i = 0; i < 100; i++) {
+        cycles(1);
+        TEST_ASSERT_EQUAL_UINT32(1, record.block);
+        TEST_ASSERT_EQUAL_UINT32(1, motion_block(&motion)->number);
+    }
+    asked.hold = MOTION_GOES;
+    (void)run_to_the_end();
+    TEST_ASSERT_EQUAL_UINT32(2, record.block);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -447,5 +468,6 @@ int main(void)
     RUN_TEST(test_no_ceiling_is_made_while_both_are_in_use);
     RUN_TEST(test_in_a_hold_a_tool_change_that_has_begun_is_finished_and_nothing_more);
     RUN_TEST(test_in_a_hold_no_tool_change_begins);
+    RUN_TEST(test_a_hold_at_a_stop_tells_the_motion_that_has_ended);
     return UNITY_END();
 }
