@@ -101,16 +101,17 @@ static void check_path(struct summary *summary)
 
 /*
  * After a complete run nothing may be missing; a run that ended early may only not have done what
- * is not there.
+ * is not there. What waits behind the last motion with a length may have the number of one without.
  */
 static void check_blocks(struct summary *summary, const struct summary_source *source)
 {
     double missing = source->verifier->strayed ? 1 : 0;
 
     if (source->outcome == OUTCOME_COMPLETED && !source->verifier->strayed)
-        missing = source->totals->is_open
-                      ? maths_abs(verifier_get_missing(source->verifier))
-                      : maths_abs((double)source->totals->last - (double)summary->figures.blocks);
+        missing =
+            source->totals->is_open
+                ? maths_abs(verifier_get_missing(source->verifier))
+                : maths_max(0, (double)source->totals->last - (double)summary->figures.blocks);
     add_check(summary, "blocks_missing", AXIS_COUNT, "", missing, 0);
 }
 
