@@ -1,14 +1,22 @@
 /*
  * The law, with e the target less the point:
  *
- *     velocity      v* = v_target + k_x e              no more than VELOCITY_PART of what the acceleration can settle
- *     acceleration  a* = a_target + k_v (v* - v)       within its limit
- *     jerk          j  = j_target + k_a (a* - a)       within its limit
+ *     velocity      v* = v_target + k_x e            no more than the acceleration and the jerk can
+ *                                                    settle: VELOCITY_PART of A / k_v, and of
+ *                                                    JERK_PART J / k_v^2
+ *     acceleration  a* = a_target + k_v (v* - v)     within its limit
+ *     jerk          j  = j_target + k_a (a* - a)     within its limit
  *
  * Within limits each step asks no more of the next than that can do. Without, the jerk being
  * constant in a cycle, all three poles are exp(-bandwidth cycle): with c = 1 - that, per cycle,
  *
  *     k_a = 3 c - 3/2 c^2 + 1/3 c^3,   k_v k_a = 3 c^2 - c^3,   k_x k_v k_a = c^3
+ *
+ * The bound by the jerk keeps a large e from swinging for ever. At its limit the jerk acts as if it
+ * were multiplied by some q < 1, and the bounded v* - v_target by some r; both are stable together
+ * while r < 9 q. A swing of w rad/s would last where q = w^2 / 3 k_v^2 and r = 9 q, with v* bounded
+ * by J / (w k_v): above some sqrt(3) J / k_v^2 (describing functions). Without, slow taps that turn
+ * back at once swung all the way out.
  *
  * Rejected: to bound v* - v_target by (J e^2)^(1/3) and a* - a_target by (J (v* - v))^(1/2), what
  * the jerk can take back. It settles a large e sooner, but is up to three times as far off after a
@@ -25,6 +33,7 @@
 #define RATE_RATIO 2.0
 
 #define VELOCITY_PART 0.5
+#define JERK_PART     3.5
 
 void takt_follower_init(struct follower *f, double cycle_s)
 {
@@ -63,8 +72,9 @@ static double clamp(double value, double most)
 static double wanted_jerk(const struct follower *f, const struct follower_target *t)
 {
     const double a_max = f->limits.acceleration_mm_s2;
+    const double settled = maths_min(a_max, JERK_PART * f->limits.jerk_mm_s3 / f->gain_v);
     const double catching =
-        clamp(f->gain_x * (t->x_mm - f->at.x_mm), VELOCITY_PART * a_max / f->gain_v);
+        clamp(f->gain_x * (t->x_mm - f->at.x_mm), VELOCITY_PART * settled / f->gain_v);
     const double a = clamp(t->a_mm_s2 + f->gain_v * (t->v_mm_s + catching - f->at.v_mm_s), a_max);
 
     return t->j_mm_s3 + f->gain_a * (a - f->at.a_mm_s2);

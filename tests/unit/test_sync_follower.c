@@ -79,6 +79,29 @@ static void test_a_large_step_is_reached_within_limits(void)
     check_limits();
 }
 
+/*
+ * As a tap does: more than the jerk can follow, by which the point once went on to swing by 0.03
+ * mm.
+ */
+static void test_a_target_that_turns_back_at_once_is_come_to_without_swinging(void)
+{
+    struct follower_target target = {.v_mm_s = 1.0};
+    double turned = 0.0;
+
+    for (int i = 0; i < 1500; i++) {
+        const double before = follower.at.x_mm;
+
+        target.v_mm_s = maths_clamp(0.2 * (505 - i), -1.0, 1.0);
+        target.a_mm_s2 = maths_abs(target.v_mm_s) < 1.0 ? -200.0 : 0.0;
+        target.x_mm += target.v_mm_s * CYCLE_S;
+        step(&target, &nowhere);
+        turned += i > 600 && follower.at.x_mm > before ? 1.0 : 0.0;
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, turned);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, target.x_mm + target.v_mm_s * CYCLE_S, follower.at.x_mm);
+    check_limits();
+}
+
 static void test_a_target_faster_than_the_velocity_is_followed_at_the_velocity(void)
 {
     struct follower_target target = {.v_mm_s = 150.0};
@@ -180,6 +203,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_small_step_of_the_target_is_settled_without_overshoot);
     RUN_TEST(test_a_large_step_is_reached_within_limits);
+    RUN_TEST(test_a_target_that_turns_back_at_once_is_come_to_without_swinging);
     RUN_TEST(test_a_target_faster_than_the_velocity_is_followed_at_the_velocity);
     RUN_TEST(test_an_end_is_come_to_rest_on_exactly);
     RUN_TEST(test_braking_takes_the_least_time);
