@@ -42,6 +42,7 @@ void takt_handover_end(struct motion *m)
     const struct block *b = path_first(m->path);
 
     takt_reference_stand(&m->reference, b->start + b->length);
+    takt_average_start(&m->mover.average, m->path->limits.profile, 1, m->reference.at, 0);
     m->setpoint = m->reference.at;
     m->feed = 0.0;
     m->at = b->curve.end;

@@ -115,6 +115,20 @@ static void test_passes_at_different_speeds_cut_the_same_groove(void)
     bench_check_limits(&bench);
 }
 
+/* What the averages remember of the motion before the thread is no way that the axes go. */
+static void test_behind_a_thread_the_feed_begins_at_0(void)
+{
+    bench_go(&bench, MOVE_RAPID, 5.0, 0.0, 0.0);
+    bench_turn(&bench, 600);
+    bench_go(&bench, MOVE_THREAD, 5.0, -30.0, 2.0);
+    bench_go(&bench, MOVE_RAPID, 0.0, -30.0, 0.0);
+    bench_start(&bench);
+    while (bench_cycle(&bench)) {
+        TEST_ASSERT_TRUE(bench.record.feed_mm_s >= 0.0);
+    }
+    TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
+}
+
 static void test_a_spindle_that_turns_the_other_way_cuts_too(void)
 {
     set_thread(-600, 1.5);
@@ -414,6 +428,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_thread_is_in_phase_with_the_index_and_ends_exactly);
     RUN_TEST(test_passes_at_different_speeds_cut_the_same_groove);
+    RUN_TEST(test_behind_a_thread_the_feed_begins_at_0);
     RUN_TEST(test_a_spindle_that_turns_the_other_way_cuts_too);
     RUN_TEST(test_a_change_of_speed_changes_the_feed_and_not_the_thread);
     RUN_TEST(test_a_thread_goes_on_over_a_tangent_junction_without_a_stop);
