@@ -150,7 +150,7 @@ static void enter_block(struct verifier *j, const struct cycle_record *record)
     leave_block(j);
     j->junction_near = j->block.landed ? 1 : VERIFIER_JUNCTION_CYCLES;
     j->step_inside = j->block.landed;
-    j->strayed = record->block < j->block.number;
+    j->strayed = record->block < j->told;
     while (j->block.number < record->block) {
         if (!next_motion(j)) {
             j->strayed = true;
@@ -256,8 +256,9 @@ static double corrected_mm(const struct cycle_record *record)
 
 bool verifier_add(struct verifier *j, const struct cycle_record *record, const struct block *block)
 {
-    if (record->block != j->block.number && !j->strayed)
+    if ((record->block > j->block.number || record->block < j->told) && !j->strayed)
         enter_block(j, record);
+    j->told = record->block;
     const bool smoothed =
         block_is_motion(block) && (block->curve.kind == CURVE_SPLINE || j->block.rounded);
 

@@ -95,6 +95,7 @@ struct verifier {
     uint32_t read;         /* motions */
     struct point read_end; /* where the last one ends */
     struct verifier_block block;
+    uint32_t told;  /* number of the last cycle's motion; less behind a probe of no length */
     double rate_hz; /* 1 / cycle time */
     unsigned axes;
     struct verifier_axis axis[AXIS_COUNT];

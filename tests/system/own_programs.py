@@ -33,7 +33,7 @@ for program, (moves, stops, path_mm, time_s) in table():
 t.check(sorted(named) == sorted(f for f in os.listdir(t.OWN_PROGRAMS) if f.endswith(".ngc")), "README names all programs")
 
 # Cycles behind the last motion with a length have the number of one without.
-for behind in ("G1 F200\nG4 P0.1", "G0 X1\nM3 S100\nG4 P0.1", "G64 P0.1\nG1 X1\nG4 P0.1"):
+for behind in ("G1 F200\nG4 P0.1", "G0 X1\nM3 S100\nG4 P0.1", "G64 P0.1\nG1 X1\nG4 P0.1", "G38.3 X1\nG4 P0.1\nG0 X2"):
     program = t.write("behind.ngc", f"G21 G90 F1000\nG1 X1\n{behind}\nM2\n")
     status, out, err = t.run("run", program, "--json", "behind.json", "--quiet")
     broken = [check["name"] for check in t.load_json("behind.json")["checks"] if not check["held"]]
