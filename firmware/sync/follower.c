@@ -35,6 +35,12 @@
 #define VELOCITY_PART 0.5
 #define JERK_PART     3.5
 
+/*
+ * Most of J t^2, in V: acceleration_for takes J t^2/72 off V, of which a quarter may go. Where a
+ * cycle's jerk is more than V it is not needed.
+ */
+#define ROUNDED_VELOCITIES 18.0
+
 void takt_follower_init(struct follower *f, double cycle_s)
 {
     TAKT_ASSERT(cycle_s > 0.0);
@@ -61,6 +67,8 @@ void takt_follower_start(struct follower *f, const struct brake_limits *limits)
                 limits->jerk_mm_s3 > 0.0);
     memset(&f->at, 0, sizeof(f->at));
     f->limits = *limits;
+    f->limits.jerk_mm_s3 = maths_min(
+        limits->jerk_mm_s3, ROUNDED_VELOCITIES * limits->velocity_mm_s / (f->cycle_s * f->cycle_s));
     f->braking = false;
 }
 

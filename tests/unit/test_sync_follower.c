@@ -79,6 +79,23 @@ static void test_a_large_step_is_reached_within_limits(void)
     check_limits();
 }
 
+/* J t^2 is 200 times V: what a cycle's jerk could round is taken off V, and was more than that. */
+static void test_velocity_is_kept_where_the_jerk_of_a_cycle_is_far_more(void)
+{
+    const struct brake_limits stiff = {5.0, 1e5, 1e9};
+    struct follower_target target = {.v_mm_s = 3.0};
+    double before = 0.0;
+
+    takt_follower_start(&follower, &stiff);
+    for (int i = 0; i < 500; i++) {
+        target.x_mm = 3.0 * CYCLE_S * i;
+        takt_follower_step(&follower, &target, &nowhere);
+        TEST_ASSERT_TRUE(maths_abs(follower.at.x_mm - before) <= 5.0 * CYCLE_S * 1.0001);
+        before = follower.at.x_mm;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, target.x_mm + 3.0 * CYCLE_S, follower.at.x_mm);
+}
+
 /*
  * As a tap does: more than the jerk can follow, by which the point once went on to swing by 0.03
  * mm.
@@ -203,6 +220,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_small_step_of_the_target_is_settled_without_overshoot);
     RUN_TEST(test_a_large_step_is_reached_within_limits);
+    RUN_TEST(test_velocity_is_kept_where_the_jerk_of_a_cycle_is_far_more);
     RUN_TEST(test_a_target_that_turns_back_at_once_is_come_to_without_swinging);
     RUN_TEST(test_a_target_faster_than_the_velocity_is_followed_at_the_velocity);
     RUN_TEST(test_an_end_is_come_to_rest_on_exactly);
