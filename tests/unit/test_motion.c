@@ -427,7 +427,7 @@ static void test_in_a_hold_no_tool_change_begins(void)
     TEST_ASSERT_TRUE(motion.changes_tool);
 }
 
-/* Behind an event that a hold keeps, the next motion is not read into the record of the last one. */
+/* Behind an event that a hold keeps, the next motion is not read in the place of the last one. */
 static void test_a_hold_at_a_stop_tells_the_motion_that_has_ended(void)
 {
     push(MOVE_FEED, 1.0, 20.0);
