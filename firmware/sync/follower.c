@@ -69,7 +69,7 @@ void takt_follower_start(struct follower *f, const struct brake_limits *limits)
     f->limits = *limits;
     f->limits.jerk_mm_s3 = maths_min(
         limits->jerk_mm_s3, ROUNDED_VELOCITIES * limits->velocity_mm_s / (f->cycle_s * f->cycle_s));
-    f->braking = false;
+    f->state = FOLLOWER_FOLLOWS;
 }
 
 static double clamp(double value, double most)
@@ -137,7 +137,7 @@ void takt_follower_step(struct follower *f, const struct follower_target *target
                         const struct follower_end *end)
 {
     TAKT_ASSERT(end->sense == 1.0 || end->sense == -1.0);
-    if (f->braking) {
+    if (f->state != FOLLOWER_FOLLOWS) {
         step_brake(f);
         return;
     }
@@ -150,7 +150,7 @@ void takt_follower_step(struct follower *f, const struct follower_target *target
         f->at = mirrored(&next, end->sense);
         return;
     }
-    f->braking = true;
+    f->state = FOLLOWER_LANDS;
     f->sense = end->sense;
     takt_brake_begin_at(&f->brake, &now, &f->limits, end->sense * jerk, f->cycle_s, end_mm);
     step_brake(f);
@@ -158,10 +158,9 @@ void takt_follower_step(struct follower *f, const struct follower_target *target
 
 void takt_follower_brake(struct follower *f)
 {
-    if (f->braking) {
-        return;
+    if (f->state == FOLLOWER_FOLLOWS) {
+        f->sense = 1.0;
+        takt_brake_begin(&f->brake, &f->at, &f->limits);
     }
-    f->braking = true;
-    f->sense = 1.0;
-    takt_brake_begin(&f->brake, &f->at, &f->limits);
+    f->state = FOLLOWER_STOPS;
 }

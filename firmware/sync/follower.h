@@ -25,14 +25,20 @@ struct follower_end {
     double x_mm;
 };
 
+enum follower_state {
+    FOLLOWER_FOLLOWS,
+    FOLLOWER_LANDS, /* comes to rest on the end, whatever the target does */
+    FOLLOWER_STOPS  /* was told to come to rest, on the end too if it was landing there */
+};
+
 struct follower {
     double cycle_s;
     double gain_x, gain_v, gain_a; /* 1/s */
     struct brake_limits limits;
     struct brake_state at; /* at the end of the last cycle */
-    bool braking;          /* comes to rest, whatever the target does */
-    double sense;          /* of braking */
-    struct brake brake;    /* as if sense were 1 */
+    enum follower_state state;
+    double sense;       /* of coming to rest */
+    struct brake brake; /* as if sense were 1 */
 };
 
 void takt_follower_init(struct follower *f, double cycle_s);
@@ -47,10 +53,10 @@ void takt_follower_start(struct follower *f, const struct brake_limits *limits);
 void takt_follower_step(struct follower *f, const struct follower_target *target,
                         const struct follower_end *end);
 
-/* Has it come to rest by braking? */
+/* Has it come to rest for good? */
 static inline bool follower_rests(const struct follower *f)
 {
-    return f->braking && brake_is_over(&f->brake);
+    return f->state != FOLLOWER_FOLLOWS && brake_is_over(&f->brake);
 }
 
 /* From now on it comes to rest as fast as it can. */

@@ -54,10 +54,9 @@ const struct diagnostic *takt_spindle_sync_get_alarm(const struct spindle_sync *
     return &l->alarm;
 }
 
-static void command(struct spindle_sync *l, double rpm)
+static bool taps(const struct spindle_sync *l)
 {
-    l->commands = true;
-    l->command_rpm = rpm;
+    return l->tap.phase != TAP_NONE;
 }
 
 /* For the spindle, in the direction it was commanded: rev, rev/s. */
@@ -85,7 +84,6 @@ static void fail(struct spindle_sync *l, enum takt_error code, double value, dou
     takt_diagnostic_set(&l->alarm, code, b->move.line, 0, "", 0, value);
     takt_diagnostic_set_limit(&l->alarm, limit);
     takt_follower_brake(&l->follower);
-    l->stopped = true;
 }
 
 /* -- before the thread -- */
@@ -113,9 +111,7 @@ static void begin(struct spindle_sync *l, double commanded_rpm)
     l->sense = commanded_rpm < 0.0 ? -1.0 : 1.0;
     l->stood = 0;
     l->waited = 0;
-    l->stopped = false;
-    l->taps = b->move.kind == MOVE_TAP;
-    l->out = false;
+    l->tap.phase = b->move.kind == MOVE_TAP ? TAP_IN : TAP_NONE;
     l->before_rpm = commanded_rpm;
     l->phase = SPINDLE_SYNC_WAITS;
 }
@@ -155,7 +151,8 @@ static void set_tap(struct spindle_sync *l)
     const double out_rpm = in_rpm * out_ratio(l);
     const double most_rpm = l->config.max_rpm > 0.0 ? l->config.max_rpm : out_rpm;
 
-    l->tap = (struct tap){.in_rev_s = in_rpm / SECONDS_PER_MINUTE,
+    l->tap = (struct tap){.phase = TAP_IN,
+                          .in_rev_s = in_rpm / SECONDS_PER_MINUTE,
                           .out_rev_s = maths_min(out_rpm, most_rpm) / SECONDS_PER_MINUTE,
                           .ramp_rev_s2 = l->config.ramp_rpm_s / SECONDS_PER_MINUTE};
 }
@@ -178,7 +175,7 @@ static bool check_length(struct spindle_sync *l, double rev_s)
     const double pitch_mm = l->at.pitch_mm;
     const struct brake_state at_speed = {.v_mm_s = pitch_mm * rev_s};
     const double in_mm = 0.5 * pitch_mm * l->lead_in.way_rev;
-    const double out_mm = l->taps ? pitch_mm * takt_tap_turns(&l->tap)
+    const double out_mm = taps(l) ? pitch_mm * takt_tap_turns(&l->tap)
                                   : takt_brake_reach(&at_speed, &l->chain.limits);
     const bool fits = l->at.end_mm >= in_mm && l->chain.end_mm >= in_mm + out_mm;
 
@@ -216,11 +213,11 @@ static void start(struct spindle_sync *l)
     l->lead_in.pitch_mm = l->at.pitch_mm;
     l->lead_in.way_rev = takt_lead_in_way(l->at.pitch_mm, lead_in_speed(l, now.speed),
                                           &l->chain.limits, l->config.cycle_s);
-    if (l->taps) {
+    if (taps(l)) {
         set_tap(l);
     }
     if (!check_speed(l, l->at.pitch_mm, now.speed) ||
-        (l->taps && !check_speed(l, l->at.pitch_mm, l->tap.out_rev_s)) ||
+        (taps(l) && !check_speed(l, l->at.pitch_mm, l->tap.out_rev_s)) ||
         !check_length(l, now.speed)) {
         return;
     }
@@ -247,7 +244,7 @@ static void wait_for_spindle(struct spindle_sync *l, const struct motion_operato
 /* The position that belongs to an angle. Out of a hole the thread is left at its start only. */
 static struct lead_in_place place_at(const struct spindle_sync *l, double rev)
 {
-    if (!l->out && !takt_lead_in_is_over(&l->lead_in, rev)) {
+    if (l->tap.phase != TAP_OUT && !takt_lead_in_is_over(&l->lead_in, rev)) {
         return takt_lead_in_at(&l->lead_in, rev);
     }
     return (struct lead_in_place){
@@ -293,7 +290,7 @@ static bool has_stopped(struct spindle_sync *l, const struct lock_view *now)
 {
     const double rpm = now->speed * SECONDS_PER_MINUTE;
 
-    if (!l->taps || !l->tap.turned) {
+    if (l->tap.phase <= TAP_IN) {
         return rpm < SPINDLE_SYNC_STANDS_RPM;
     }
     if (-rpm >= SPINDLE_SYNC_STANDS_RPM) {
@@ -325,11 +322,11 @@ static void watch(struct spindle_sync *l)
 /* The end that is not passed: of the thread; a little below the hole's bottom; then the start. */
 static struct follower_end end_of(const struct spindle_sync *l)
 {
-    if (l->out) {
+    if (l->tap.phase == TAP_OUT) {
         return (struct follower_end){.sense = -1.0, .x_mm = 0.0};
     }
     return (struct follower_end){
-        .sense = 1.0, .x_mm = l->chain.end_mm + (l->taps ? l->config.tolerance_mm : 0.0)};
+        .sense = 1.0, .x_mm = l->chain.end_mm + (taps(l) ? l->config.tolerance_mm : 0.0)};
 }
 
 /* Blocks of the angle, and of the setpoint, that have been left behind. */
@@ -352,9 +349,9 @@ static void follow_tap(struct spindle_sync *l, struct motion *m)
     const struct lock_view now = view(l, 0.0);
     const double left = (l->chain.end_mm - place_at(l, now.rev).x) / l->at.pitch_mm;
 
-    command(l, l->sense * SECONDS_PER_MINUTE * takt_tap_command(&l->tap, left, now.speed));
-    if (!l->out && l->tap.turned && l->follower.at.v_mm_s <= 0.0) {
-        l->out = true;
+    l->command_rpm = l->sense * SECONDS_PER_MINUTE * takt_tap_command(&l->tap, left, now.speed);
+    if (l->tap.phase == TAP_TURNS && l->follower.at.v_mm_s <= 0.0) {
+        l->tap.phase = TAP_OUT;
         takt_handover_pass_block(m);
     }
 }
@@ -373,24 +370,23 @@ static void follow(struct spindle_sync *l, struct motion *m, const struct motion
         l->phase = SPINDLE_SYNC_WAITS;
         return;
     }
-    if (!l->follower.braking) {
+    if (l->follower.state == FOLLOWER_FOLLOWS) {
         takt_chain_extend(&l->chain);
         watch(l);
-    } else if (l->taps && !l->out && !l->stopped) {
+    } else if (taps(l) && l->tap.phase != TAP_OUT && l->follower.state == FOLLOWER_LANDS) {
         fail(l, TAKT_ERROR_TAP_DEEP, l->config.tolerance_mm, 0.0);
     }
     if (wanted->hold == MOTION_STOPS) {
         takt_follower_brake(&l->follower);
-        l->stopped = true;
     }
     const struct follower_target target = target_of(l);
     const struct follower_end end = end_of(l);
 
     takt_follower_step(&l->follower, &target, &end);
     pass_blocks(l, m);
-    if (l->taps && l->stopped) {
-        command(l, 0.0);
-    } else if (l->taps) {
+    if (taps(l) && l->follower.state == FOLLOWER_STOPS) {
+        l->command_rpm = 0.0;
+    } else if (taps(l)) {
         follow_tap(l, m);
     }
 }
@@ -400,7 +396,7 @@ static void follow(struct spindle_sync *l, struct motion *m, const struct motion
 /* Tapped: not before the spindle turns as it did. */
 static void return_spindle(struct spindle_sync *l, struct motion *m)
 {
-    command(l, l->before_rpm);
+    l->command_rpm = l->before_rpm;
     if (is_turning(l)) {
         l->phase = SPINDLE_SYNC_IDLE;
         takt_handover_end(m);
@@ -411,7 +407,7 @@ static void return_spindle(struct spindle_sync *l, struct motion *m)
 
 static void finish(struct spindle_sync *l, struct motion *m)
 {
-    if (l->taps) {
+    if (taps(l)) {
         l->phase = SPINDLE_SYNC_RETURNS;
         l->waited = 0;
         return;
@@ -426,7 +422,8 @@ static void finish(struct spindle_sync *l, struct motion *m)
 
 static bool has_landed(const struct spindle_sync *l)
 {
-    return l->phase == SPINDLE_SYNC_FOLLOWS && follower_rests(&l->follower) && !l->stopped;
+    return l->phase == SPINDLE_SYNC_FOLLOWS && follower_rests(&l->follower) &&
+           l->follower.state == FOLLOWER_LANDS;
 }
 
 /* From the start of the block the setpoint is in: its line is straight. */
@@ -434,7 +431,7 @@ static void set_point(const struct spindle_sync *l, struct point *at)
 {
     const struct block *b = path_first(l->chain.path);
     const double x = l->follower.at.x_mm;
-    const double way = l->taps ? (l->out ? l->chain.end_mm - x : x) : x - l->at.start_mm;
+    const double way = l->tap.phase == TAP_OUT ? l->chain.end_mm - x : x - l->at.start_mm;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         at->at[i] =
@@ -482,7 +479,7 @@ enum spindle_sync_result takt_spindle_sync_cycle(struct spindle_sync *l, struct 
                                                  double commanded_rpm, struct cycle_record *record)
 {
     if (l->alarm.code != TAKT_OK) {
-        command(l, 0.0);
+        l->command_rpm = 0.0;
     }
     if (l->alarm.code != TAKT_OK &&
         (l->phase != SPINDLE_SYNC_FOLLOWS || follower_rests(&l->follower))) {

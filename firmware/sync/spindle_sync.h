@@ -11,6 +11,7 @@
 #define TAKT_SYNC_SPINDLE_SYNC_H
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "hal/inputs.h"
 #include "motion/motion.h"
 #include "sync/angle.h"
@@ -56,12 +57,9 @@ struct spindle_sync {
     struct chain_leg ahead; /* of the angle */
     struct lead_in lead_in;
     struct follower follower;
-    bool stopped; /* braking was asked for: not at the end of the block */
-    bool taps, out;
     struct tap tap;
-    double before_rpm; /* commanded before tapping */
-    bool commands;     /* in this cycle */
-    double command_rpm;
+    double before_rpm;   /* commanded before tapping */
+    double command_rpm;  /* in this cycle; infinite: none */
     uint32_t next_block; /* a thread that begins with this block goes on with this zero angle */
     double next_zero_rev;
     struct diagnostic alarm; /* TAKT_OK: none */
@@ -86,7 +84,7 @@ static inline void spindle_sync_measure(struct spindle_sync *l,
                                         const struct spindle_feedback *spindle)
 {
     l->spindle = spindle;
-    l->commands = false;
+    l->command_rpm = MATHS_INFINITY;
     angle_measure(&l->angle, spindle->angle_rev);
 }
 
@@ -101,10 +99,8 @@ enum spindle_sync_result takt_spindle_sync_cycle(struct spindle_sync *l, struct 
 /* Does this cycle command the spindle? Then *rpm is the speed, signed. */
 static inline bool spindle_sync_get_command(const struct spindle_sync *l, double *rpm)
 {
-    if (l->commands) {
-        *rpm = l->command_rpm;
-    }
-    return l->commands;
+    *rpm = l->command_rpm < MATHS_INFINITY ? l->command_rpm : *rpm;
+    return l->command_rpm < MATHS_INFINITY;
 }
 
 const struct diagnostic *takt_spindle_sync_get_alarm(const struct spindle_sync *l);

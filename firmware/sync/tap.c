@@ -29,8 +29,10 @@ double takt_tap_command(struct tap *t, double turns_left, double speed_rev_s)
     const double w = maths_max(0.0, speed_rev_s);
     const double left = turns_left - GUARD_REV - w * DELAY_S;
 
-    t->turned = t->turned || left <= 0.5 * w * w / t->ramp_rev_s2;
-    if (t->turned) {
+    if (t->phase == TAP_IN && left <= 0.5 * w * w / t->ramp_rev_s2) {
+        t->phase = TAP_TURNS;
+    }
+    if (t->phase != TAP_IN) {
         return -t->out_rev_s;
     }
     const double slower =

@@ -5,13 +5,18 @@
 #ifndef TAKT_SYNC_TAP_H
 #define TAKT_SYNC_TAP_H
 
-#include <stdbool.h>
+enum tap_phase {
+    TAP_NONE, /* a thread */
+    TAP_IN,
+    TAP_TURNS, /* the order to turn back has been given */
+    TAP_OUT    /* the axes have turned round */
+};
 
 struct tap {
+    enum tap_phase phase;
     double in_rev_s;    /* commanded, > 0 */
     double out_rev_s;   /* > 0 */
     double ramp_rev_s2; /* by which the spindle's drive changes its speed, > 0 */
-    bool turned;        /* the order to turn back has been given */
 };
 
 /* Turns that turning back takes at least. */

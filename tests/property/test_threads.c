@@ -136,7 +136,8 @@ static void look_back(void)
 {
     const double x_mm = bench.sync.follower.at.x_mm;
 
-    if (!bench.is_locked || bench.sync.taps || bench.sync.phase != SPINDLE_SYNC_FOLLOWS) {
+    if (!bench.is_locked || bench.sync.tap.phase != TAP_NONE ||
+        bench.sync.phase != SPINDLE_SYNC_FOLLOWS) {
         seen.farthest_mm = 0.0;
         return;
     }

@@ -298,7 +298,7 @@ static void test_the_way_out_is_in_the_groove_of_the_way_in(void)
     while (bench_cycle(&bench)) {
         if (bench_is_on_thread(&bench) && bench.sent_mm[BENCH_AHEAD] > 9.0 &&
             bench.sent_mm[BENCH_AHEAD] < 11.0) {
-            *(bench.sync.out ? &out : &in) = groove_rev();
+            *(bench.sync.tap.phase == TAP_OUT ? &out : &in) = groove_rev();
         }
     }
     TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
