@@ -1,5 +1,6 @@
 #include "replay/replay.h"
 
+#include "base/assert.h"
 #include "base/maths.h"
 #include "motion/handover.h"
 
@@ -105,15 +106,25 @@ static void point_at(const struct replay *r, struct point *at)
 
 /* -- sections -- */
 
-static void take_end(struct replay *r)
+/* Is it known where the block ends? The last one of a section ends with that, and is not told. */
+static bool has_end(const struct replay *r)
 {
-    struct intake *s = r->intake;
+    return r->blocks + 1 < r->section.blocks && r->intake->ends_taken != r->intake->ends_came;
+}
 
-    r->has_end = r->blocks + 1 < r->section.blocks && s->ends_taken != s->ends_came;
-    if (r->has_end) {
-        r->end += s->end[s->ends_taken % INTAKE_ENDS_MAX];
-        s->ends_taken++;
+static uint64_t end_of(const struct replay *r)
+{
+    TAKT_ASSERT(has_end(r));
+    return r->begin + r->intake->end[r->intake->ends_taken % INTAKE_ENDS_MAX];
+}
+
+static void end_block(struct replay *r)
+{
+    if (has_end(r)) {
+        r->begin = end_of(r);
+        r->intake->ends_taken++;
     }
+    r->blocks++;
 }
 
 static bool starts_at(const struct replay *r, const struct point *at)
@@ -149,18 +160,16 @@ static void begin_section(struct replay *r, const struct motion *m)
     for (int k = 1; k < 4; k++) {
         memcpy(r->control[k], r->section.start, sizeof(r->control[k]));
     }
-    r->begun = true;
+    r->state = REPLAY_RUNS;
     r->interval = 0;
     r->taken = 0;
     r->part = 0.0;
-    r->stop = REPLAY_NO_STOP;
     r->blocks = 0;
-    r->end = 0;
-    take_end(r);
+    r->begin = 0;
     shift(r);
     if (r->section.first_block != path_first(m->path)->number || !starts_at(r, &m->at)) {
         fail(r, TAKT_ERROR_PLAN_STRAYED);
-        r->begun = false;
+        r->state = REPLAY_BETWEEN;
     }
 }
 
@@ -213,18 +222,18 @@ static void find_stop(struct replay *r)
     const double way = takt_halt_way(&r->rate);
     const uint64_t from = (uint64_t)takt_maths_ceil(
         ((double)r->interval + r->part + way * r->step) * REPLAY_END_PARTS);
-    uint64_t end = r->end;
-    uint32_t i = s->ends_taken;
     uint32_t left = r->section.blocks - r->blocks - 1;
 
-    if (!r->has_end) {
+    if (!has_end(r)) {
         return;
     }
-    for (; end < from && i != s->ends_came && left > 1; i++, left--) {
+    uint64_t end = end_of(r);
+
+    for (uint32_t i = s->ends_taken + 1; end < from && i != s->ends_came && left > 1; i++, left--) {
         end += s->end[i % INTAKE_ENDS_MAX];
     }
     if (end >= from && end < (uint64_t)r->section.intervals * REPLAY_END_PARTS) {
-        r->stop = REPLAY_STOP_AHEAD;
+        r->state = REPLAY_STOP_AHEAD;
         r->stop_end = end;
         r->halt = (struct halt){0};
     }
@@ -235,25 +244,19 @@ static double step_to_stop(struct replay *r, double rate)
 {
     const double to = maths_min(rate, HALT_RATE);
 
-    if (r->stop == REPLAY_NO_STOP && takt_halt_is_possible(&r->rate)) {
+    if (r->state == REPLAY_RUNS && takt_halt_is_possible(&r->rate)) {
         find_stop(r);
     }
-    if (r->stop != REPLAY_STOP_AHEAD) {
+    if (r->state != REPLAY_STOP_AHEAD) {
         return takt_rate_step(&r->rate, to);
     }
     const double way = maths_max(way_to(r, r->stop_end), 0.0);
     const double here = takt_halt_step(&r->halt, &r->rate, to, way);
 
     if (here == way && rate_rests(&r->rate)) {
-        r->stop = REPLAY_STOP_REACHED;
+        r->state = REPLAY_STOP_REACHED;
     }
     return here;
-}
-
-/* At the stop, whatever rounding says. */
-static void stand_at_stop(struct replay *r)
-{
-    r->part = (double)r->stop_end / REPLAY_END_PARTS - (double)r->interval;
 }
 
 /*
@@ -263,7 +266,7 @@ static void stand_at_stop(struct replay *r)
 static void begin_rate(struct replay *r, double rate, bool single_block)
 {
     takt_rate_set(&r->rate, single_block ? maths_min(rate, HALT_RATE) : rate);
-    if (single_block && r->has_end && takt_halt_way(&r->rate) > way_to(r, r->end)) {
+    if (single_block && has_end(r) && takt_halt_way(&r->rate) > way_to(r, end_of(r))) {
         takt_rate_set(&r->rate, 0.0);
     }
 }
@@ -279,8 +282,8 @@ static bool advance(struct replay *r, double rate, bool single_block)
     const double way = single_block ? step_to_stop(r, rate) : takt_rate_step(&r->rate, rate);
 
     r->part += way * r->step;
-    if (r->stop == REPLAY_STOP_REACHED) {
-        stand_at_stop(r);
+    if (r->state == REPLAY_STOP_REACHED) { /* at the stop, whatever rounding says */
+        r->part = (double)r->stop_end / REPLAY_END_PARTS - (double)r->interval;
     }
     while (r->part >= 1.0) {
         r->interval++;
@@ -341,10 +344,7 @@ static bool pass_blocks(struct replay *r, struct motion *m, bool ended)
     const double here = ((double)r->interval + r->part) * REPLAY_END_PARTS;
     unsigned left = PASS_MAX;
 
-    if (!r->has_end) { /* of a block longer than the ring of intervals the end comes later */
-        take_end(r);
-    }
-    while (ended || (r->blocks + 1 < r->section.blocks && r->has_end && here >= (double)r->end)) {
+    while (ended || (has_end(r) && here >= (double)end_of(r))) {
         if (!pass_pieces(m, &left)) {
             return false;
         }
@@ -354,8 +354,7 @@ static bool pass_blocks(struct replay *r, struct motion *m, bool ended)
         if (!pass_one(m, &left)) {
             return false;
         }
-        r->blocks++;
-        take_end(r);
+        end_block(r);
     }
     return true;
 }
@@ -390,7 +389,7 @@ static void end_section(struct replay *r, struct motion *m, struct point *at)
     } else {
         fail(r, TAKT_ERROR_PLAN_STRAYED);
     }
-    r->begun = false;
+    r->state = REPLAY_BETWEEN;
 }
 
 /* Has all of the curve been gone along? */
@@ -405,7 +404,7 @@ static void drive(struct replay *r, struct motion *m, double rate, bool single_b
 {
     const struct point before = m->at;
     const bool over = is_over(r) || advance(r, rate, single_block);
-    const bool passed = r->stop == REPLAY_STOP_REACHED || pass_blocks(r, m, over);
+    const bool passed = r->state == REPLAY_STOP_REACHED || pass_blocks(r, m, over);
     const bool ended = over && (passed || is_cut_short(m->path));
     struct point at = m->at;
 
@@ -439,23 +438,23 @@ static bool stands_at_stop(struct replay *r, struct motion *m, double rate,
 {
     const struct point at = m->at;
 
-    if (r->stop < REPLAY_STOP_REACHED) {
+    if (r->state < REPLAY_STOP_REACHED) {
         return false;
     }
-    if (r->stop == REPLAY_STOP_TOLD && rate > 0.0 && !wanted->wait) {
-        r->stop = REPLAY_NO_STOP;
+    if (r->state == REPLAY_STOP_TOLD && rate > 0.0 && !wanted->wait) {
+        r->state = REPLAY_RUNS;
         (void)pass_blocks(r, m, false);
         return false;
     }
-    takt_handover_add_cycle(m, &at, 0.0, r->stop == REPLAY_STOP_REACHED, record);
-    r->stop = REPLAY_STOP_TOLD;
+    takt_handover_add_cycle(m, &at, 0.0, r->state == REPLAY_STOP_REACHED, record);
+    r->state = REPLAY_STOP_TOLD;
     return true;
 }
 
 /* The axes stand, and may not go on. */
 static bool has_failed(const struct replay *r)
 {
-    return r->alarm.code != TAKT_OK && (!r->begun || rate_rests(&r->rate));
+    return r->alarm.code != TAKT_OK && (r->state == REPLAY_BETWEEN || rate_rests(&r->rate));
 }
 
 enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
@@ -468,7 +467,7 @@ enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
         return REPLAY_FAILED;
     }
     r->waits = false;
-    if (!r->begun) {
+    if (r->state == REPLAY_BETWEEN) {
         if (wanted->wait || rate == 0.0 || !has_begin(r) || !takt_motion_rests(m)) {
             r->waits = r->intake->sections_taken > 0 && rate > 0.0 && !has_begin(r);
             r->starved += r->waits ? 1 : 0;
@@ -477,7 +476,7 @@ enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
         }
         begin_section(r, m);
         begin_rate(r, rate, wanted->single_block);
-        if (!r->begun) {
+        if (r->state == REPLAY_BETWEEN) {
             return REPLAY_FAILED;
         }
     }
@@ -490,7 +489,7 @@ enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
         rate = 0.0;
     }
     if (!wanted->single_block) {
-        r->stop = REPLAY_NO_STOP;
+        r->state = REPLAY_RUNS;
     }
     drive(r, m, rate, wanted->single_block, record);
     return REPLAY_CYCLE;

@@ -22,9 +22,13 @@
 /* More intervals need not be there to go on: the ring holds no more. */
 #define REPLAY_BRAKE_INTERVALS_MAX (INTAKE_INTERVALS_MAX - 2 * REPLAY_RECORD_INTERVALS)
 
-/* Single block: a stop at the end of a block that is passed without one otherwise. */
-enum replay_stop {
-    REPLAY_NO_STOP,
+/*
+ * Where it is in the program. Single block: it stops at the end of a block that is passed without a
+ * stop otherwise.
+ */
+enum replay_state {
+    REPLAY_BETWEEN, /* sections: none is being executed */
+    REPLAY_RUNS,
     REPLAY_STOP_AHEAD,   /* at stop_end */
     REPLAY_STOP_REACHED, /* the axes stand there */
     REPLAY_STOP_TOLD     /* and a record has said so */
@@ -34,10 +38,9 @@ struct replay {
     struct intake *intake;
     struct rate rate;
     struct halt halt;
-    enum replay_stop stop;
+    enum replay_state state;
     uint64_t stop_end;                     /* in parts of intervals from the section's start */
-    bool begun;                            /* a section is being executed */
-    struct intake_section section;         /* that */
+    struct intake_section section;         /* the one that is being executed */
     uint32_t interval;                     /* intervals of it that are over */
     uint32_t taken;                        /* intervals of it taken from the stream */
     double part;                           /* of the interval */
@@ -45,8 +48,7 @@ struct replay {
     double quantum_mm;
     double step;     /* intervals in a cycle at the rate 1 */
     uint32_t blocks; /* of the section that are over */
-    uint64_t end; /* of the block, in parts of intervals from the section's start; with has_end */
-    bool has_end;
+    uint64_t begin;  /* of the block, in parts of intervals from the section's start */
     uint32_t
         brake_intervals; /* fewer than these and not the section's end: no more must be driven */
     double highest;   /* rate: from there it can be braked within what the rings hold of a stream */
