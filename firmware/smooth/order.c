@@ -30,8 +30,6 @@ struct link {
     float start[SMOOTH_SLOTS_MAX];          /* from the chord's beginning, weighted */
     float way[SMOOTH_SLOTS_MAX];
     float within_mm;
-    bool ends;   /* the route goes on from its end; else all that is near lies before it */
-    bool passed; /* no way may stay on it */
 };
 
 /* Parts of a line; first > last: none. */
@@ -105,8 +103,7 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
 
     TAKT_ASSERT(l->at_mm <= end_mm);
     l->within_mm = curved ? chord->corner_mm - CURVED_OFF * tolerance_mm : chord->within_mm;
-    l->ends = curved || l->at_mm + (double)reach_mm >= end_mm;
-    return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
+    return maths_min(l->at_mm + (double)reach_mm, end_mm);
 }
 
 static void set_at(const struct route *r, struct link *l, double at_mm)
@@ -124,8 +121,6 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
 
     l->end_mm = link_end(r, chord, l, chord_mm);
     TAKT_ASSERT(l->end_mm >= l->at_mm);
-    l->passed =
-        route_programmed(r, l->element) < chord->least_mm_s[route_element(r, l->element)->rotary];
     takt_route_point(r, l->end_mm, &hint, l->end);
     for (unsigned i = 0; i < r->slots.count; i++) {
         l->start[i] = r->slots.weight[i] * (float)(l->at[i] - chord->from[i]);
@@ -133,12 +128,26 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
     }
 }
 
+/* May no way stay on it? */
+static bool is_passed(const struct route *r, const struct order_chord *chord, const struct link *l)
+{
+    const struct route_element *e = route_element(r, l->element);
+
+    return e->programmed_mm_s < chord->least_mm_s[e->rotary];
+}
+
+/* Is its end that of an element? */
+static bool is_whole(const struct route *r, const struct link *l)
+{
+    return l->end_mm == route_end_of(r, l->element);
+}
+
 /* On from a link to the next one, of the same element or a later one. */
 static void go_on(const struct route *r, struct link *l)
 {
     TAKT_ASSERT(l->element < r->count);
+    l->element += is_whole(r, l) ? 1 : 0;
     l->at_mm = l->end_mm;
-    l->element += l->end_mm == route_end_of(r, l->element) ? 1 : 0;
     memcpy(l->at, l->end, sizeof l->at);
 }
 
@@ -155,16 +164,18 @@ static bool is_corner(const struct route *r, uint32_t element)
 
 /*
  * The parts of the chord at which the end of a link is passed, when its start is at some: not
- * before that, and in the same instant if no way may stay.
+ * before that, and in the same instant if no way may stay. All that is near lies before the end of a
+ * line from which the route does not go on.
  */
 static struct parts pass_end(const struct route *r, const struct order_chord *chord,
                              const struct link *l, struct parts start)
 {
     static const float here[SMOOTH_SLOTS_MAX];
-    const bool corner = l->end_mm == route_end_of(r, l->element) && is_corner(r, l->element + 1);
+    const bool whole = is_whole(r, l);
+    const bool corner = whole && is_corner(r, l->element + 1);
     float end[SMOOTH_SLOTS_MAX];
 
-    if (!l->ends) {
+    if (!whole && !route_element(r, l->element)->curved) {
         return nowhere;
     }
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -174,7 +185,7 @@ static struct parts pass_end(const struct route *r, const struct order_chord *ch
         near_point(r, here, chord->way, end, corner ? chord->corner_mm : l->within_mm);
 
     near.first = single_max(start.first, near.first);
-    near.last = l->passed ? single_min(start.last, near.last) : near.last;
+    near.last = is_passed(r, chord, l) ? single_min(start.last, near.last) : near.last;
     return is_there(near) ? near : nowhere;
 }
 
@@ -248,13 +259,15 @@ void takt_order_go(struct order *o, const struct route *r, const struct order_ch
             set_at(r, &l, maths_max(l.at_mm, before.span[next].first_mm));
         }
         set_link(r, chord, chord_mm, &l);
-        if (next < before.count && before.span[next].first_mm <= l.end_mm && !l.passed) {
+        const bool stays = !is_passed(r, chord, &l);
+
+        if (next < before.count && before.span[next].first_mm <= l.end_mm && stays) {
             start = wherever;
         }
         if (o->count == 0) {
             o->element = l.element;
         }
-        if (is_there(start) && !l.passed) {
+        if (is_there(start) && stays) {
             add_link(o, r, chord, &l);
         }
         start = pass_end(r, chord, &l, start);
