@@ -57,7 +57,7 @@ void *takt_path_lend(struct path *p, size_t size)
     _Static_assert(offsetof(struct path, smooth.route) % sizeof(uint64_t) == 0,
                    "at a multiple of 8");
     (void)size;
-    TAKT_ASSERT(size <= PATH_LENT_MAX && !p->smooth.open);
+    TAKT_ASSERT(size <= PATH_LENT_MAX && !smooth_is_open(&p->smooth));
     p->lent = true;
     return (unsigned char *)&p->smooth + offsetof(struct smooth, route);
 }
@@ -84,8 +84,9 @@ bool takt_path_has_room(const struct path *p)
 
 uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks)
 {
-    return (p->smooth.open || p->lent) && blocks < SMOOTH_AHEAD_PIECES ? SMOOTH_AHEAD_PIECES
-                                                                       : blocks;
+    return (smooth_is_open(&p->smooth) || p->lent) && blocks < SMOOTH_AHEAD_PIECES
+               ? SMOOTH_AHEAD_PIECES
+               : blocks;
 }
 
 /* The newest block, or the one that becomes it. */
@@ -295,11 +296,11 @@ static void push_smooth_pieces(struct path *p)
     }
     union path_spare *spare = p->spare == 0 ? &p->area.high.spare : &p->area.low.spare;
     TAKT_ASSERT(p->spare < PATH_NO_SPARE);
-    const bool open = p->smooth.open;
+    const bool open = smooth_is_open(&p->smooth);
 
     while (has_slot(p, RECORD_MAX) && push_smooth(p, &spare->scratch)) {
     }
-    if (open && !p->smooth.open) {
+    if (open && !smooth_is_open(&p->smooth)) {
         close_newest(p);
     }
 }
@@ -359,14 +360,14 @@ static void push_move(struct path *p, const struct move *move)
 
 static bool is_all_in_ring(const struct path *p)
 {
-    return !is_splitting(p) && !p->smooth.open && !p->has_next;
+    return !is_splitting(p) && !smooth_is_open(&p->smooth) && !p->has_next;
 }
 
 void takt_path_go_on(struct path *p)
 {
     go_on_splitting(p);
     push_smooth_pieces(p);
-    if (p->has_next && !p->smooth.open && has_slot(p, RECORD_SHORT_MAX)) {
+    if (p->has_next && !smooth_is_open(&p->smooth) && has_slot(p, RECORD_SHORT_MAX)) {
         p->has_next = false;
         push_move(p, &p->split);
     }
@@ -387,7 +388,7 @@ void takt_path_restart(struct path *p, const struct point *at, uint64_t position
     p->has_next = false;
     p->smoothing = false;
     takt_smooth_reset(&p->smooth);
-    TAKT_ASSERT(!is_splitting(p) && !p->smooth.open);
+    TAKT_ASSERT(!is_splitting(p) && !smooth_is_open(&p->smooth));
 }
 
 /* May it be smoothed together with what is being smoothed? */
@@ -395,7 +396,7 @@ static bool joins_chain(struct path *p, const struct move *move)
 {
     struct curve curve;
 
-    if (!p->smooth.open) {
+    if (!smooth_is_open(&p->smooth)) {
         return true;
     }
     if (!move_is_motion(move)) {

@@ -23,8 +23,7 @@ void takt_smooth_reset(struct smooth *s)
 
 void takt_smooth_end(struct smooth *s)
 {
-    s->open = false;
-    s->finished = false;
+    s->chain = SMOOTH_NO_CHAIN;
     s->ready = 0;
     s->taken = 0;
 }
@@ -71,18 +70,19 @@ static bool parts(struct smooth *s, const struct curve *curve)
 /* Is it within the same tolerance as what is open? */
 static bool is_alike(const struct smooth *s, const struct move *move)
 {
-    return !s->open || (!s->finished && move->tolerance_mm == s->merge.move.tolerance_mm &&
-                        move->merge_mm == s->merge.move.merge_mm);
+    return !smooth_is_open(s) ||
+           (!smooth_is_finished(s) && move->tolerance_mm == s->merge.move.tolerance_mm &&
+            move->merge_mm == s->merge.move.merge_mm);
 }
 
 bool takt_smooth_joins(struct smooth *s, const struct move *move, const struct curve *curve)
 {
-    return is_alike(s, move) && (!s->open || !parts(s, curve));
+    return is_alike(s, move) && (!smooth_is_open(s) || !parts(s, curve));
 }
 
 bool takt_smooth_has_room(const struct smooth *s)
 {
-    return !s->open || (!s->finished && takt_route_has_room(&s->route));
+    return !smooth_is_open(s) || (!smooth_is_finished(s) && takt_route_has_room(&s->route));
 }
 
 /*
@@ -100,33 +100,31 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
-    TAKT_ASSERT(!s->open && move->tolerance_mm > 0.0);
+    TAKT_ASSERT(!smooth_is_open(s) && move->tolerance_mm > 0.0);
     takt_smooth_limit(&limits);
     takt_route_init(&s->route, &limits, tolerance_mm);
     s->route.moved = s->expected;
     s->expected = 0;
     s->window.count = 0;
-    s->open = true;
+    s->chain = SMOOTH_GROWS;
     s->ready = 0;
     s->taken = 0;
     s->told = 0;
     s->proved = 0;
-    s->stops = false;
-    s->exact = false;
-    s->since = (struct worth_since){.element = 0};
-    s->starts = true;
-    s->standing = SMOOTH_STANDS_NOT;
+    s->exact_mm = SMOOTH_NOWHERE_MM;
+    s->since = (struct worth_since){.rate = 1.0f};
+    s->standing = SMOOTH_STANDS_BEFORE;
     takt_order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
-    s->merge.open = false;
+    s->merge.lines = 0;
 }
 
 /* The newest line will not grow any more. */
 static void close_merge(struct smooth *s)
 {
-    if (s->merge.open) {
+    if (s->merge.lines > 0) {
         takt_route_push(&s->route, &s->merge.move, s->merge.number, &s->merge.curve);
-        s->merge.open = false;
+        s->merge.lines = 0;
     }
 }
 
@@ -134,7 +132,7 @@ void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number
                       const struct curve *curve)
 {
     TAKT_ASSERT(takt_smooth_has_room(s) && is_alike(s, move));
-    if (!s->open) {
+    if (!smooth_is_open(s)) {
         begin(s, move);
     }
     s->route.moved |= axes_of(s, curve);
@@ -147,14 +145,14 @@ void takt_smooth_push(struct smooth *s, const struct move *move, uint32_t number
 
 bool takt_smooth_is_line(const struct smooth *s)
 {
-    return s->open && !s->finished && s->merge.open && s->merge.curve.kind == CURVE_LINE &&
-           s->merge.points == 0 && s->route.count == 0;
+    return s->chain == SMOOTH_GROWS && s->merge.lines == 1 && s->merge.curve.kind == CURVE_LINE &&
+           s->route.count == 0;
 }
 
 void takt_smooth_finish(struct smooth *s)
 {
-    if (s->open) {
+    if (smooth_is_open(s)) {
         close_merge(s);
-        s->finished = true;
+        s->chain = SMOOTH_FINISHED;
     }
 }

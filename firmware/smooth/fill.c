@@ -24,7 +24,7 @@ static struct verifier_way way_of(const struct smooth *s)
         s->window.count > 0 ? s->window.at_mm[0] : route_element(r, r->first)->start_mm;
     const double known_mm = maths_max(takt_route_end(r) - start_mm, WAY_LEAST_MM);
 
-    return (struct verifier_way){s->finished ? known_mm : EXPECTED * known_mm, s->finished};
+    return (struct verifier_way){known_mm, smooth_is_finished(s) ? known_mm : EXPECTED * known_mm};
 }
 
 /* How the rate may change: as these axes allow. What others do is nothing to it. */
@@ -42,7 +42,8 @@ static void find_change(const struct smooth *s, unsigned axes, double interval_s
 static double find_interval(const struct smooth *s, unsigned axes)
 {
     return takt_interval_of(&s->limits, &s->route, axes,
-                            (double)s->route.part * s->merge.move.tolerance_mm, s->finished);
+                            (double)s->route.part * s->merge.move.tolerance_mm,
+                            smooth_is_finished(s));
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
@@ -65,7 +66,7 @@ float takt_fill_useful(const struct smooth *s)
 {
     const double most = takt_interval_reach(&s->route) / s->merge.move.tolerance_mm;
 
-    return s->finished && most < 1.0 ? (float)most : 1.0f;
+    return smooth_is_finished(s) && most < 1.0 ? (float)most : 1.0f;
 }
 
 void takt_fill_within(struct smooth *s, float part, float fine)
@@ -79,9 +80,10 @@ void takt_fill_within(struct smooth *s, float part, float fine)
 
 void takt_fill_begin_anew(struct smooth *s)
 {
-    TAKT_ASSERT(s->open && s->ready == 0);
+    TAKT_ASSERT(smooth_is_open(s) && s->ready == 0);
     takt_fill_within(s, 1.0f, 1.0f);
-    s->starts = true;
+    s->standing = SMOOTH_STANDS_BEFORE;
+    s->since.rate = 1.0f;
     s->proved = 0;
 }
 
@@ -106,7 +108,7 @@ static bool last_feels_end(const struct smooth *s, double known_mm)
 /* Is the end known, or no more of the route can be? */
 static bool is_all_known(const struct smooth *s)
 {
-    return s->finished || !takt_route_has_room(&s->route);
+    return smooth_is_finished(s) || !takt_route_has_room(&s->route);
 }
 
 /*
@@ -128,7 +130,7 @@ static void forget_end(struct smooth *s)
 
 bool takt_fill_fits(const struct smooth *s, unsigned axes)
 {
-    const struct verifier_way shortest = {WAY_LEAST_MM, false};
+    const struct verifier_way shortest = {0.0, WAY_LEAST_MM};
     struct verifier_change least;
 
     if (s->window.count == 0 || (axes & ~s->route.moved) == 0) {
@@ -145,7 +147,7 @@ static void begin_window(struct smooth *s)
 {
     const bool stands = s->window.count > 0;
 
-    if (stands && !s->starts) {
+    if (stands && s->standing != SMOOTH_STANDS_BEFORE) {
         return;
     }
     set_interval(s, 1.0f);

@@ -6,11 +6,10 @@
 void takt_merge_open(struct merge *m, const struct move *move, uint32_t number,
                      const struct curve *curve)
 {
-    m->open = true;
     m->move = *move;
     m->number = number;
     m->curve = *curve;
-    m->points = 0;
+    m->lines = 1;
 }
 
 static bool is_alike(const struct merge *m, const struct move *move, const struct curve *curve)
@@ -56,8 +55,8 @@ static bool passes_all(const struct merge *m, const struct point *end, double wi
 {
     double last = 0.0;
 
-    TAKT_ASSERT(m->points <= MERGE_POINTS_MAX);
-    for (unsigned i = 0; i < m->points; i++) {
+    TAKT_ASSERT(m->lines > 0 && m->lines <= MERGE_POINTS_MAX);
+    for (unsigned i = 0; i < m->lines; i++) {
         double distance;
         const double place = place_beside(&m->curve.start, end, &m->point[i], &distance);
 
@@ -75,19 +74,18 @@ bool takt_merge_take(struct merge *m, const struct move *move, uint32_t number,
     struct curve longer;
 
     TAKT_ASSERT(within_mm >= 0.0);
-    if (!m->open || m->points == MERGE_POINTS_MAX || !is_alike(m, move, curve)) {
+    if (m->lines == 0 || m->lines > MERGE_POINTS_MAX || !is_alike(m, move, curve)) {
         return false;
     }
-    m->point[m->points] = m->curve.end;
-    m->points++;
+    m->point[m->lines - 1] = m->curve.end;
     if (!passes_all(m, &curve->end, within_mm) ||
         !takt_curve_set_line(&longer, &m->curve.start, &curve->end) ||
         longer.rotary != curve->rotary) {
-        m->points--;
         return false;
     }
     m->move = *move;
     m->number = number;
     m->curve = longer;
+    m->lines++;
     return true;
 }

@@ -18,12 +18,11 @@
 
 /* A line that may still grow. */
 struct merge {
-    bool open;
     struct move move; /* the last one that is part of it */
     uint32_t number;  /* of that motion */
     struct curve curve;
-    struct point point[MERGE_POINTS_MAX]; /* programmed ends it passes over */
-    unsigned points;
+    unsigned lines;                       /* that it is of; 0: there is none */
+    struct point point[MERGE_POINTS_MAX]; /* programmed ends it passes over, between them */
 };
 
 void takt_merge_open(struct merge *m, const struct move *move, uint32_t number,

@@ -2,6 +2,7 @@
 
 #include "base/assert.h"
 #include "base/maths.h"
+#include "smooth/search.h"
 
 #include <string.h>
 
@@ -31,11 +32,15 @@ double takt_smooth_rest_s(const struct smooth *s)
     return standing_s(s) + ramp_s(s);
 }
 
-/* Control point of a piece; exactly the programmed end where it is that. */
+/*
+ * Control point of a piece; exactly the programmed end where it is that: what has come since the
+ * window was filled ends elsewhere.
+ */
 static void set_control(const struct smooth *s, unsigned i, struct point *control)
 {
     const struct window *w = &s->window;
-    const bool end = s->ends && w->at_end && i + SMOOTH_FIXED >= w->count;
+    const bool end = smooth_is_finished(s) && s->known_mm == takt_route_end(&s->route) &&
+                     w->at_end && i + SMOOTH_FIXED >= w->count;
     double p[AXIS_COUNT];
 
     takt_window_sample(w, &s->route, i, p);
@@ -52,16 +57,24 @@ uint32_t takt_smooth_tell(struct smooth *s, uint32_t element)
     return s->told;
 }
 
-void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
+/* The last one that is ready, with nothing proved behind it: is that where the chain ends? */
+static enum smooth_end end_of(const struct smooth *s, unsigned i)
+{
+    if (i + 1 < s->ready || s->proved > 0) {
+        return SMOOTH_GOES_ON;
+    }
+    return takt_search_is_stuck(s) ? SMOOTH_STOPS : SMOOTH_ENDS;
+}
+
+void takt_smooth_set_piece(struct smooth *s, unsigned i, struct smooth_piece *piece)
 {
     const struct window *w = &s->window;
-    const unsigned i = s->taken;
     const uint32_t element = w->element[i + 1];
     const uint32_t told = takt_smooth_tell(s, element);
     struct verifier_need need;
     struct verifier_rate rate;
 
-    TAKT_ASSERT(s->taken < s->ready && i + 3 < w->count);
+    TAKT_ASSERT(i < s->ready && i + 3 < w->count);
     takt_route_move(&s->route, told, &s->move);
     piece->move = &s->move;
     piece->number = route_element(&s->route, told)->number;
@@ -76,39 +89,28 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by = (double)takt_verifier_change_on(&need, &s->route, &s->change, &rate);
     piece->change.rounded = piece->change.by / s->change.rounding_s;
-    piece->end = s->finished && w->at_end && i + 4 == w->count ? SMOOTH_ENDS
-                 : s->stops && s->taken + 1 == s->ready        ? SMOOTH_STOPS
-                                                               : SMOOTH_GOES_ON;
+    piece->end = end_of(s, i);
 }
 
-void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                       enum smooth_standing where)
-{
-    TAKT_ASSERT(s->standing == SMOOTH_STANDS_NOT && where != SMOOTH_STANDS_NOT);
-    s->stand_rotary = of->rotary;
-    s->stand_number = of->number;
-    s->stand_at = *at;
-    s->standing = where;
-}
-
-void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece)
+void takt_smooth_stand(struct smooth *s, struct smooth_piece *piece)
 {
     const double change_per_s = 1.0 / s->limits.cycle_s;
-    const struct point at = s->stand_at;
+    const bool behind = s->standing == SMOOTH_STANDS_BEHIND;
+    const struct point at = piece->control[behind ? 3 : 0];
 
     TAKT_ASSERT(s->standing != SMOOTH_STANDS_NOT);
     *piece = (struct smooth_piece){
         .move = &s->move,
-        .number = s->stand_number,
+        .number = piece->number,
         .control = {at, at, at, at},
         .interval_s = standing_s(s),
         .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
         .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
-        .rotary = s->stand_rotary,
-        .end = s->standing == SMOOTH_STANDS_BEHIND ? SMOOTH_ENDS : SMOOTH_GOES_ON,
+        .rotary = piece->rotary,
+        .end = behind ? SMOOTH_ENDS : SMOOTH_GOES_ON,
     };
     s->standing = SMOOTH_STANDS_NOT;
-    if (piece->end == SMOOTH_ENDS) {
+    if (behind) {
         takt_smooth_end(s);
     }
 }

@@ -17,11 +17,9 @@ double takt_smooth_rest_s(const struct smooth *s);
  * to, which may be before.
  */
 uint32_t takt_smooth_tell(struct smooth *s, uint32_t element);
-/* The next one of those that are ready. */
-void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece);
-/* at: where the axes stand; of: the piece behind or before. */
-void takt_smooth_stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                       enum smooth_standing where);
-void takt_smooth_take_standing(struct smooth *s, struct smooth_piece *piece);
+/* One of those that are ready. */
+void takt_smooth_set_piece(struct smooth *s, unsigned i, struct smooth_piece *piece);
+/* The piece behind which, or before which, the axes stand becomes that in which they do. */
+void takt_smooth_stand(struct smooth *s, struct smooth_piece *piece);
 
 #endif

@@ -73,7 +73,7 @@ static void verified(struct smooth *s, struct verifier_verdict *v)
 /* Do this many pieces come to the end of the chain? */
 bool takt_search_is_end(const struct smooth *s, unsigned pieces)
 {
-    return s->finished && s->window.at_end && pieces == s->window.count - 3;
+    return smooth_is_finished(s) && s->window.at_end && pieces == s->window.count - 3;
 }
 
 /* Pieces to keep when this many from the first on are good. */
@@ -82,7 +82,7 @@ static unsigned kept(const struct smooth *s, unsigned good)
     const struct window *w = &s->window;
 
     TAKT_ASSERT(good <= s->window.count);
-    if (w->at_end && !s->finished) {
+    if (w->at_end && !smooth_is_finished(s)) {
         return good / BLIND_PART;
     }
     if (takt_search_is_end(s, good)) {
@@ -147,16 +147,12 @@ bool takt_search_is_stuck(const struct smooth *s)
 /* What is asked of a curve and of the path. */
 struct worth_window takt_search_asked(const struct smooth *s, union smooth_scratch *scratch)
 {
-    return (struct worth_window){.window = &s->window,
-                                 .route = &s->route,
-                                 .machine = &s->limits,
-                                 .change = &s->change,
+    return (struct worth_window){.of = s,
                                  .work = &scratch->worth,
                                  .pieces = s->ready + s->proved,
                                  .kept = s->ready,
-                                 .rest_s = (float)takt_smooth_rest_s(s),
-                                 .starts = s->head.proved == 0,
-                                 .finished = s->finished};
+                                 .begin_s =
+                                     s->head.proved == 0 ? (float)takt_smooth_rest_s(s) : 0.0f};
 }
 
 /*
@@ -174,7 +170,6 @@ static void search_way(struct smooth *s, union smooth_scratch *scratch, unsigned
     relax_and_locate(s, scratch, AIM);
     slow_down(s, scratch, v);
     time_last(s, scratch, v);
-    s->ends = s->finished && s->window.at_end;
     const unsigned good = v->whole[v->good];
 
     s->ready = v->whole[kept(s, good)];
@@ -204,7 +199,7 @@ void takt_search_on(struct smooth *s, union smooth_scratch *scratch, struct veri
 void takt_search_follow(struct smooth *s, const struct verifier_verdict *v)
 {
     TAKT_ASSERT(s->ready > 0 && s->ready + 1 < s->window.count);
-    if (s->ready == v->followed && !s->stops) {
+    if (s->ready == v->followed && !takt_search_is_stuck(s)) {
         s->order = v->order;
     } else {
         takt_verifier_order(&s->window, &s->route, s->ready, &s->order);

@@ -24,7 +24,6 @@ static void fall_back(struct smooth *s)
     TAKT_ASSERT(s->head.proved > 0);
     s->ready = s->head.proved;
     s->proved = 0;
-    s->stops = true;
     takt_head_take(&s->head, &s->window, &s->route);
 }
 
@@ -32,7 +31,6 @@ static void fall_back(struct smooth *s)
 static void take_path(struct smooth *s, double to_mm)
 {
     TAKT_ASSERT(s->head.proved == 0);
-    s->exact = true;
     s->exact_mm = to_mm;
     s->ready = 0;
     s->proved = 0;
@@ -95,13 +93,14 @@ static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
 static void drop_taken(struct smooth *s)
 {
+    const bool stops = s->ready > 0 && takt_search_is_stuck(s);
+
     TAKT_ASSERT(s->taken == s->ready);
     takt_window_drop(&s->window, &s->route, s->taken);
     s->taken = 0;
     s->ready = 0;
-    if (s->stops) {
+    if (stops) {
         takt_window_rest(&s->window, &s->route, &s->order);
-        s->stops = false;
         takt_fill_begin_anew(s);
     }
     if (s->window.count > 0) {
@@ -126,7 +125,7 @@ static void end_element(struct smooth *s)
     if (w->at_mm[0] < s->exact_mm || !takt_exact_rests(&s->route, &s->limits, next)) {
         return;
     }
-    s->exact = false;
+    s->exact_mm = SMOOTH_NOWHERE_MM;
     s->since = (struct worth_since){.element = next};
     takt_order_start(&s->order, w->at_mm[0], next);
     takt_fill_begin_anew(s);
@@ -143,12 +142,12 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
     const bool goes = takt_exact_next(&s->window, &s->route, &s->move, curve);
     const bool ends = s->window.at_mm[0] >= route_end_of(&s->route, element);
 
-    TAKT_ASSERT(s->exact);
+    TAKT_ASSERT(s->exact_mm > SMOOTH_NOWHERE_MM);
     s->move.line = route_element(&s->route, told)->line;
     piece->move = &s->move;
     piece->number = route_element(&s->route, told)->number;
-    piece->starts = s->starts;
-    s->starts = s->starts && !goes;
+    piece->starts = s->standing == SMOOTH_STANDS_BEFORE;
+    s->standing = goes ? SMOOTH_STANDS_NOT : s->standing;
     piece->continues = !ends || told != element;
     if (ends) {
         end_element(s);
@@ -156,19 +155,23 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
     return goes;
 }
 
+static bool has_piece(const struct smooth *s)
+{
+    return s->taken < s->ready || s->standing == SMOOTH_STANDS_BEHIND;
+}
+
+/* The axes stand before the first piece from rest, and behind the last one of the chain. */
 static void take_piece(struct smooth *s, struct smooth_piece *piece)
 {
-    TAKT_ASSERT(s->taken < s->ready);
-    takt_smooth_set_piece(s, piece);
-    if (s->starts) {
-        s->starts = false;
-        takt_smooth_stand(s, piece, &piece->control[0], SMOOTH_STANDS_BEFORE);
-        takt_smooth_take_standing(s, piece);
+    TAKT_ASSERT(has_piece(s));
+    takt_smooth_set_piece(s, s->taken < s->ready ? s->taken : s->taken - 1, piece);
+    if (s->standing != SMOOTH_STANDS_NOT) {
+        takt_smooth_stand(s, piece);
         return;
     }
     s->taken++;
     if (piece->end == SMOOTH_ENDS) {
-        takt_smooth_stand(s, piece, &piece->control[3], SMOOTH_STANDS_BEHIND);
+        s->standing = SMOOTH_STANDS_BEHIND;
         piece->end = SMOOTH_GOES_ON;
     }
 }
@@ -176,23 +179,19 @@ static void take_piece(struct smooth *s, struct smooth_piece *piece)
 /* Is what the path does at the end of the element known? */
 static bool is_element_known(const struct smooth *s)
 {
-    return s->finished || s->window.element[0] + 1 < s->route.count;
+    return smooth_is_finished(s) || s->window.element[0] + 1 < s->route.count;
 }
 
 enum smooth_taken takt_smooth_take(struct smooth *s, union smooth_scratch *scratch,
                                    struct smooth_piece *piece, struct curve *curve)
 {
-    while (s->open) {
-        if (s->standing != SMOOTH_STANDS_NOT) {
-            takt_smooth_take_standing(s, piece);
-            return SMOOTH_PIECE;
-        }
-        if (s->taken < s->ready) {
+    while (smooth_is_open(s)) {
+        if (has_piece(s)) {
             take_piece(s, piece);
             return SMOOTH_PIECE;
         }
         drop_taken(s);
-        if (!s->exact) {
+        if (s->exact_mm <= SMOOTH_NOWHERE_MM) {
             if (!next_window(s, scratch)) {
                 return SMOOTH_NONE;
             }

@@ -74,12 +74,21 @@ union smooth_scratch {
     union worth_work worth;
 };
 
-/* Is a piece still to come, in which the axes stand? */
+enum smooth_chain {
+    SMOOTH_NO_CHAIN,
+    SMOOTH_GROWS,   /* one has begun and not been taken to its end */
+    SMOOTH_FINISHED /* nothing follows in it */
+};
+
+/* Do the axes stand before what comes next? */
 enum smooth_standing {
     SMOOTH_STANDS_NOT,
-    SMOOTH_STANDS_BEFORE, /* the chain goes on after it */
-    SMOOTH_STANDS_BEHIND  /* it ends the chain */
+    SMOOTH_STANDS_BEFORE, /* the next piece, or motion, begins at rest */
+    SMOOTH_STANDS_BEHIND  /* the last piece has been taken, and a standing one ends the chain */
 };
+
+/* Before every place of the route. */
+#define SMOOTH_NOWHERE_MM (-1.0)
 
 struct smooth {
     struct smooth_limits limits;
@@ -96,21 +105,24 @@ struct smooth {
     uint32_t told;    /* and its element: the latest one of the pieces taken */
     unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
     double known_mm;  /* end of the route when the window was filled */
-    double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
-    bool exact;       /* it is */
+    /* to this place the path itself is taken, and on to where it rests; or SMOOTH_NOWHERE_MM */
+    double exact_mm;
     struct worth_since since;
     enum smooth_standing standing;
-    bool starts;       /* the next piece begins at rest */
-    bool stand_rotary; /* of the piece before or behind it, */
-    uint32_t stand_number;
-    struct point stand_at; /* and where the axes stand */
-    bool stops;            /* the last of the ready ones is a stop */
-    bool ends;             /* the window's end is that of the chain */
-    bool open;             /* a chain has begun and not been taken to its end */
-    bool finished;         /* nothing follows in this chain */
-    unsigned ready;        /* pieces that may be taken */
-    unsigned taken;        /* of them */
+    enum smooth_chain chain;
+    unsigned ready; /* pieces that may be taken */
+    unsigned taken; /* of them */
 };
+
+static inline bool smooth_is_open(const struct smooth *s)
+{
+    return s->chain != SMOOTH_NO_CHAIN;
+}
+
+static inline bool smooth_is_finished(const struct smooth *s)
+{
+    return s->chain == SMOOTH_FINISHED;
+}
 
 void takt_smooth_init(struct smooth *s, const struct smooth_limits *limits);
 /* May this motion be part of a smooth chain? */

@@ -51,7 +51,7 @@ struct trial {
 struct quickest {
     struct trial trial;
     struct worth_far far;
-    bool whole; /* its first window comes to the chain's end */
+    bool whole; /* its first window comes to the end of what is known */
 };
 
 /* Where the axes rest. */
@@ -67,7 +67,7 @@ struct going {
     unsigned windows; /* behind it, */
     float spent_s;    /* and what they took, */
     float rate;       /* and that of nominal time there */
-    bool quicker;     /* than what was the quickest, to where that has come */
+    double to_mm;     /* the place that it has come to; if it is as far as the quickest, as quick */
 };
 
 enum outcome { GOES_ON, SLOWER, QUICKER };
@@ -105,7 +105,7 @@ static float time_to(struct worth_window now, float rate, double to_mm)
 {
     struct worth_run run;
 
-    while (to_mm < AT_REST && now.pieces > 1 && now.window->at_mm[now.pieces] >= to_mm) {
+    while (to_mm < AT_REST && now.pieces > 1 && now.of->window.at_mm[now.pieces] >= to_mm) {
         now.pieces--;
     }
     now.kept = now.pieces;
@@ -113,10 +113,16 @@ static float time_to(struct worth_window now, float rate, double to_mm)
     return run.time_s;
 }
 
+/* Where it is as far as the quickest has come, it was quicker to there. */
+static bool is_quicker(const struct going *g, const struct quickest *best)
+{
+    return g->to_mm >= best->far.to_mm;
+}
+
 /* The axes come to rest where no way leads on, and must get going again from there. */
 static enum outcome stop(const struct smooth *s, const struct going *g, struct quickest *best)
 {
-    if (g->windows == 0 || !g->quicker) {
+    if (!is_quicker(g, best)) {
         return SLOWER;
     }
     best->far.to_mm = maths_max(best->far.to_mm, s->window.at_mm[1]);
@@ -130,20 +136,20 @@ static enum outcome judge(struct smooth *s, union smooth_scratch *scratch, struc
 {
     struct worth_window now = takt_search_asked(s, scratch);
     const bool ends = takt_search_is_end(s, s->ready);
-    const bool last = ends || (s->window.at_end && !s->finished) || s->proved == 0;
+    const bool last = ends || (s->window.at_end && !smooth_is_finished(s)) || s->proved == 0;
+    const bool was_quicker = is_quicker(g, best);
     const double to_mm = ends ? AT_REST : s->window.at_mm[now.pieces + 1];
-    const float worth = s->finished ? WORTH : WORTH_AHEAD;
+    const float worth = smooth_is_finished(s) ? WORTH : WORTH_AHEAD;
     struct worth_run run;
 
-    now.starts = g->windows == 0;
-    if (!g->quicker && to_mm >= best->far.to_mm) {
-        if (g->spent_s + time_to(now, g->rate, best->far.to_mm) >= worth * best->far.time_s) {
-            return SLOWER;
-        }
-        g->quicker = true;
+    now.begin_s = g->windows == 0 ? now.begin_s : 0.0f;
+    g->to_mm = maths_max(g->to_mm, to_mm);
+    if (!was_quicker && is_quicker(g, best) &&
+        g->spent_s + time_to(now, g->rate, best->far.to_mm) >= worth * best->far.time_s) {
+        return SLOWER;
     }
     g->windows++;
-    if (g->quicker && (last || g->windows >= WINDOWS)) {
+    if (is_quicker(g, best) && (last || g->windows >= WINDOWS)) {
         best->far.to_mm = maths_max(best->far.to_mm, last ? to_mm : s->window.at_mm[s->ready + 1]);
         best->far.time_s = g->spent_s + time_to(now, g->rate, best->far.to_mm);
         return QUICKER;
@@ -151,7 +157,8 @@ static enum outcome judge(struct smooth *s, union smooth_scratch *scratch, struc
     takt_worth_run(&now, g->rate, &run);
     g->spent_s += run.kept_s;
     g->rate = run.rate;
-    return !g->quicker && (last || g->spent_s > best->far.time_s || g->windows >= WINDOWS_ALL)
+    return !is_quicker(g, best) &&
+                   (last || g->spent_s > best->far.time_s || g->windows >= WINDOWS_ALL)
                ? SLOWER
                : GOES_ON;
 }
@@ -160,12 +167,12 @@ static enum outcome judge(struct smooth *s, union smooth_scratch *scratch, struc
 static bool try_one(struct smooth *s, union smooth_scratch *scratch, const struct rest *from,
                     struct trial now, struct quickest *best, struct verifier_verdict *v)
 {
-    struct going g = {.rate = 1.0f};
+    struct going g = {.rate = 1.0f, .to_mm = SMOOTH_NOWHERE_MM};
     enum outcome outcome = GOES_ON;
-    bool whole;
 
     begin(s, scratch, from, &now, v);
-    whole = s->window.at_end;
+    const bool whole = s->window.at_end;
+
     while (outcome == GOES_ON) {
         if (g.windows > 0) {
             go_on(s, scratch, v);

@@ -32,8 +32,8 @@ struct verifier_change {
 
 /* The way of a chain to its end. */
 struct verifier_way {
-    double expected_mm; /* infinite: as long as it may be */
-    bool whole;         /* all of it is known */
+    double known_mm;
+    double expected_mm; /* no less; infinite: as long as it may be */
 };
 
 /* What a machine's axes are left for changes of rate, where a piece takes so long. */

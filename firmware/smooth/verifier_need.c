@@ -180,6 +180,7 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
     double ramp_s = limits->cycle_s;
 
     TAKT_ASSERT(interval_s > 0.0 && way->expected_mm > 0.0);
+    TAKT_ASSERT(way->known_mm <= way->expected_mm);
     change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
@@ -187,7 +188,8 @@ void takt_verifier_change(const struct smooth_limits *limits, double interval_s,
             ramp_s = maths_max(ramp_s, reached(limits, i) / limits->jerk_mm_s3[i]);
         }
     }
-    const double least = maths_max(limits->cycle_s, way->whole ? 0.0 : change->by / most);
+    const double go_on_s = way->known_mm < way->expected_mm ? change->by / most : 0.0;
+    const double least = maths_max(limits->cycle_s, go_on_s);
     const double wanted = maths_max(least, rounding_of_way(limits, change->by, way->expected_mm));
 
     change->rounding_s =

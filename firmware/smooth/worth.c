@@ -2,19 +2,27 @@
 
 #include "base/assert.h"
 #include "smooth/exact_time.h"
+#include "smooth/piece.h"
 #include "smooth/single.h"
 
 static void set_piece(const struct worth_window *now, unsigned i, struct worth_pace *p)
 {
-    const struct window *w = now->window;
+    const struct window *w = &now->of->window;
     struct verifier_need need;
     struct verifier_rate rate;
 
-    takt_verifier_need(w, now->route, i, &need);
-    takt_verifier_rate(&need, now->route, now->route->first + w->paced[i], now->change, &rate);
+    takt_verifier_need(w, &now->of->route, i, &need);
+    takt_verifier_rate(&need, &now->of->route, now->of->route.first + w->paced[i], &now->of->change,
+                       &rate);
     p->most[i] = single_min(1.0f, single_min(rate.most, rate.programmed));
     p->change[i] = 2.0f * (float)w->interval_s *
-                   takt_verifier_change_on(&need, now->route, now->change, &rate);
+                   takt_verifier_change_on(&need, &now->of->route, &now->of->change, &rate);
+}
+
+/* What a curve takes longer where it begins, or ends, at rest. */
+static float rest_s(const struct worth_window *now)
+{
+    return (float)takt_smooth_rest_s(now->of);
 }
 
 /*
@@ -49,7 +57,7 @@ static uint32_t next_rest(const struct worth_window *now, uint32_t element)
 {
     uint32_t i = element + 1;
 
-    while (i < now->route->count && !takt_exact_rests(now->route, now->machine, i)) {
+    while (i < now->of->route.count && !takt_exact_rests(&now->of->route, &now->of->limits, i)) {
         i++;
     }
     return i;
@@ -70,8 +78,8 @@ struct passed {
 /* v/2a + w a/2j, a^2 <= v j/w: what a ramp from rest takes longer than its way at the feed. */
 static float ramp(const struct worth_window *now, uint32_t element, float feed)
 {
-    const struct route_element *e = route_element(now->route, element);
-    const float j = e->along.jerk / (float)now->machine->windows;
+    const struct route_element *e = route_element(&now->of->route, element);
+    const float j = e->along.jerk / (float)now->of->limits.windows;
     const float a = single_min(e->along.acceleration, single_sqrt(feed * j));
 
     return a > 0.0f ? 0.5f * (feed / a + a / j) : 0.0f;
@@ -81,11 +89,11 @@ static float ramp(const struct worth_window *now, uint32_t element, float feed)
 static float go(const struct worth_window *now, float from, struct passed *last)
 {
     const struct worth_pace *pace = &now->work->pace;
-    const struct window *w = now->window;
+    const struct window *w = &now->of->window;
     uint32_t next = next_rest(now, w->element[0]);
-    float time = now->starts ? now->rest_s : 0.0f;
+    float time = now->begin_s;
 
-    find_pace(now, now->starts ? 1.0f : from);
+    find_pace(now, from);
     *last = (struct passed){.element = next, .rate = pace->at[now->kept]};
     if (now->pieces > 0) {
         last->stop = pace->at[0] * (float)w->interval_s / pace->change[0];
@@ -95,8 +103,8 @@ static float go(const struct worth_window *now, float from, struct passed *last)
 
         time += takes;
         last->kept = i < now->kept ? time : last->kept;
-        while (next < now->route->count &&
-               route_element(now->route, next)->start_mm <= w->at_mm[i + 2]) {
+        while (next < now->of->route.count &&
+               route_element(&now->of->route, next)->start_mm <= w->at_mm[i + 2]) {
             last->element = next;
             last->time = time;
             next = next_rest(now, next);
@@ -124,7 +132,7 @@ static float time_of_part(float all, float cruise, float part)
 /* The last rest of the path at or before the start of an element and behind first; else first. */
 static uint32_t rest_before(const struct worth_window *now, uint32_t element, uint32_t first)
 {
-    while (element > first && !takt_exact_rests(now->route, now->machine, element)) {
+    while (element > first && !takt_exact_rests(&now->of->route, &now->of->limits, element)) {
         element--;
     }
     return element;
@@ -133,7 +141,7 @@ static uint32_t rest_before(const struct worth_window *now, uint32_t element, ui
 /* From rest at the start of an element to that of another. */
 static float time_between(const struct worth_window *now, uint32_t from, uint32_t to)
 {
-    return takt_exact_time(now->route, now->machine, 0.0, from, to, &now->work->exact);
+    return takt_exact_time(&now->of->route, &now->of->limits, 0.0, from, to, &now->work->exact);
 }
 
 /*
@@ -141,8 +149,8 @@ static float time_between(const struct worth_window *now, uint32_t from, uint32_
  */
 static float path_time(const struct worth_window *now, uint32_t first, double at_mm)
 {
-    const struct route *r = now->route;
-    const uint32_t found = takt_route_find(r, at_mm, now->window->element[now->pieces + 1]);
+    const struct route *r = &now->of->route;
+    const uint32_t found = takt_route_find(r, at_mm, now->of->window.element[now->pieces + 1]);
     const uint32_t last = found > first ? found : first;
     const uint32_t from = rest_before(now, last, first);
     const uint32_t to = next_rest(now, last);
@@ -163,8 +171,8 @@ static float path_time(const struct worth_window *now, uint32_t first, double at
 
 static float path_time_of_all(const struct worth_window *now)
 {
-    return takt_exact_time(now->route, now->machine, now->window->at_mm[0], now->window->element[0],
-                           now->route->count, &now->work->exact);
+    return takt_exact_time(&now->of->route, &now->of->limits, now->of->window.at_mm[0],
+                           now->of->window.element[0], now->of->route.count, &now->work->exact);
 }
 
 /*
@@ -173,7 +181,8 @@ static float path_time_of_all(const struct worth_window *now)
  */
 static float time_of_all(const struct worth_window *now, float times)
 {
-    return (now->finished ? 2.0f : 1.0f) * now->rest_s + times * path_time_of_all(now);
+    return (smooth_is_finished(now->of) ? 2.0f : 1.0f) * rest_s(now) +
+           times * path_time_of_all(now);
 }
 
 void takt_worth_run(const struct worth_window *now, float rate, struct worth_run *run)
@@ -195,8 +204,8 @@ void takt_worth_run(const struct worth_window *now, float rate, struct worth_run
 /* What the path on all that is known is slower than its feed, but where it begins and ends. */
 static float slower_than_feed(const struct worth_window *now, float path_s)
 {
-    const struct route *r = now->route;
-    const struct window *w = now->window;
+    const struct route *r = &now->of->route;
+    const struct window *w = &now->of->window;
     const uint32_t last = r->count - 1;
     const float cruise = takt_route_time(r, w->element[0], w->at_mm[0], takt_route_end(r));
 
@@ -207,16 +216,16 @@ static float slower_than_feed(const struct worth_window *now, float path_s)
 bool takt_worth_path_from_rest(const struct worth_window *now, const struct worth_far *curve,
                                double *to_mm)
 {
-    const struct route *r = now->route;
+    const struct route *r = &now->of->route;
     const double end_mm = takt_route_end(r);
-    const bool whole = curve->to_mm >= end_mm && now->finished;
-    const float times = (curve->time_s - now->rest_s) /
-                        path_time(now, now->window->element[0], maths_min(curve->to_mm, end_mm));
+    const bool whole = curve->to_mm >= end_mm && smooth_is_finished(now->of);
+    const float times = (curve->time_s - rest_s(now)) /
+                        path_time(now, now->of->window.element[0], maths_min(curve->to_mm, end_mm));
     struct passed last;
 
     (void)go(now, 1.0f, &last);
     *to_mm = last.element == r->count ? end_mm : route_element(r, last.element)->start_mm;
-    if (now->finished || last.time > 0.0f) {
+    if (smooth_is_finished(now->of) || last.time > 0.0f) {
         return path_time_of_all(now) < time_of_all(now, whole ? times : LONGER * times);
     }
     const float path_s = path_time_of_all(now);
@@ -231,9 +240,9 @@ bool takt_worth_path_from_rest(const struct worth_window *now, const struct wort
  */
 bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
 {
-    const struct window *w = now->window;
+    const struct window *w = &now->of->window;
     const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
-    const uint32_t first = rest_before(now, w->element[1], now->route->first);
+    const uint32_t first = rest_before(now, w->element[1], now->of->route.first);
     struct passed last;
     const float time = go(now, since->rate, &last);
 
@@ -241,7 +250,7 @@ bool takt_worth_path(const struct worth_window *now, struct worth_since *since)
         *since = (struct worth_since){.element = first};
     }
     const float spent = since->spent_s;
-    const float change = now->rest_s + last.stop + ramp(now, w->element[1], feed);
+    const float change = rest_s(now) + last.stop + ramp(now, w->element[1], feed);
 
     since->rate = last.rate;
     since->spent_s += last.kept;

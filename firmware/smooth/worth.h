@@ -9,6 +9,8 @@
 #include "smooth/verifier.h"
 #include "smooth/window.h"
 
+struct smooth;
+
 /*
  * What binds the rate of nominal time on the pieces of a window: working memory, holds nothing
  * between calls.
@@ -27,16 +29,11 @@ union worth_work {
 
 /* The first pieces of a window. */
 struct worth_window {
-    const struct window *window;
-    const struct route *route;
-    const struct smooth_limits *machine;
-    const struct verifier_change *change;
+    const struct smooth *of;
     union worth_work *work;
     unsigned pieces;
     unsigned kept; /* of them: these are handed on */
-    float rest_s;  /* what a curve takes longer where it begins and ends at rest */
-    bool starts;   /* the first one begins at rest */
-    bool finished; /* nothing follows in the chain */
+    float begin_s; /* what beginning at rest takes longer; 0: they begin in motion */
 };
 
 /* What the curve has taken since it came to the stretch of path between two rests that it is on. */

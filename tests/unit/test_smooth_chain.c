@@ -91,7 +91,7 @@ static void end_chain(void)
 {
     takt_smooth_finish(&smooth);
     take_all();
-    TEST_ASSERT_FALSE(smooth.open);
+    TEST_ASSERT_FALSE(smooth_is_open(&smooth));
 }
 
 static void test_an_axis_that_needs_a_longer_interval_does_not_join_a_chain_that_has_begun(void)

@@ -25,7 +25,7 @@ void tearDown(void)
 
 static void find_change(double interval_s, double way_mm, bool whole)
 {
-    const struct verifier_way way = {way_mm, whole};
+    const struct verifier_way way = {whole ? way_mm : 0.0, way_mm};
 
     takt_verifier_change(&limits, interval_s, &way, &change);
 }
