@@ -48,20 +48,15 @@ double takt_halt_way(const struct rate *r)
     return high > 0.0 ? begun + 0.5 * high * (high / c + c / m) : 0.0;
 }
 
-/* A cycle in which the change changes by second; returns how far it leads. */
-static double change_by(struct rate *r, double second)
+static double second_towards(const struct rate *r, double to)
 {
-    const double before = r->now;
-
-    r->now = maths_max(r->now + r->change + 0.5 * second, 0.0);
-    r->change += second;
-    return 0.5 * (before + r->now) - second / 12.0;
+    return takt_rate_second(r, to, second_max(r), second_max(r), change_max(r));
 }
 
 static bool fits(const struct rate *r, double second, double way)
 {
     struct rate next = *r;
-    const double here = change_by(&next, second);
+    const double here = takt_rate_change_by(&next, second);
 
     return here + takt_halt_way(&next) <= way;
 }
@@ -72,7 +67,7 @@ static bool fits(const struct rate *r, double second, double way)
  */
 static double find_second(const struct rate *r, double most, double way)
 {
-    double low = takt_rate_second(r, 0.0, second_max(r), change_max(r));
+    double low = second_towards(r, 0.0);
     double high = most;
 
     if (high <= low || fits(r, high, way)) {
@@ -90,18 +85,14 @@ static double find_second(const struct rate *r, double most, double way)
     return low;
 }
 
-/*
- * The rate is so near to what it is to be that one cycle leads there, from where the way is enough.
- */
+/* One cycle leads to the rate that it is to be, from where the way is enough. */
 static bool settles(struct rate *r, double to, double way, double *here)
 {
-    const double m = second_max(r);
     struct rate next = *r;
 
     takt_rate_set(&next, to);
     *here = 0.5 * (r->now + to);
-    if (maths_abs(to - r->now) > 0.5 * m || maths_abs(r->change) > m ||
-        *here + takt_halt_way(&next) > way) {
+    if (!rate_settles(r, to, second_max(r)) || *here + takt_halt_way(&next) > way) {
         return false;
     }
     *r = next;
@@ -241,5 +232,5 @@ double takt_halt_step(struct halt *h, struct rate *r, double to, double way)
     if (settles(r, to, way, &here)) {
         return here;
     }
-    return change_by(r, find_second(r, takt_rate_second(r, to, second_max(r), change_max(r)), way));
+    return takt_rate_change_by(r, find_second(r, second_towards(r, to), way));
 }

@@ -12,9 +12,6 @@
 /* Cycles that coming to rest takes beyond the way along its limit: to begin it and to end it. */
 #define BRAKE_MORE_CYCLES 400.0
 
-/* Steps of the search for the rate from which braking is possible. */
-#define HIGHEST_HALVINGS 20
-
 void takt_rate_init(struct rate *r, const struct plan_limits *limits, double kept)
 {
     struct rate_limits *l = &r->limits;
@@ -63,9 +60,7 @@ static double landing_change(double way, double change, double room)
     return left > 0.0 ? room * (maths_sqrt(0.25 + 2.0 * left / room) - 0.5) : 0.0;
 }
 
-/* The cycle that changes the rate towards to, by at most room and to a change of at most most. */
-static double second_towards(const struct rate *r, double to, double room, double landing,
-                             double most)
+double takt_rate_second(const struct rate *r, double to, double room, double landing, double most)
 {
     const double sign = to > r->now ? 1.0 : -1.0;
     const double way = maths_abs(to - r->now);
@@ -74,9 +69,13 @@ static double second_towards(const struct rate *r, double to, double room, doubl
     return maths_clamp(sign * wanted - r->change, -room, room);
 }
 
-double takt_rate_second(const struct rate *r, double to, double room, double most)
+double takt_rate_change_by(struct rate *r, double second)
 {
-    return second_towards(r, to, room, room, most);
+    const double before = r->now;
+
+    r->now = maths_clamp(r->now + r->change + 0.5 * second, 0.0, 1.0);
+    r->change += second;
+    return 0.5 * (before + r->now) - second / 12.0;
 }
 
 double takt_rate_step(struct rate *r, double to)
@@ -86,51 +85,33 @@ double takt_rate_step(struct rate *r, double to)
         maths_clamp(r->now + r->change + room_at(l, r->now), r->now, 1.0); /* within this cycle */
     const double room = room_at(l, high);
     const double landing = room_at(l, maths_max(high, to));
-    const double before = r->now;
 
     TAKT_ASSERT(to >= 0.0 && to <= 1.0 && r->now >= 0.0 && r->now <= 1.0);
-    if (maths_abs(to - r->now) <= 0.5 * landing && maths_abs(r->change) <= landing) {
-        r->now = to;
-        r->change = 0.0;
-        return 0.5 * (before + to);
-    }
-    const double second =
-        second_towards(r, to, room, landing, l->change * (1.0 - l->kept * high * high));
+    if (rate_settles(r, to, landing)) {
+        const double here = 0.5 * (r->now + to);
 
-    r->now = maths_clamp(r->now + r->change + 0.5 * second, 0.0, 1.0);
-    r->change += second;
-    return before + 0.5 * (r->now - before) - second / 12.0;
+        takt_rate_set(r, to);
+        return here;
+    }
+    return takt_rate_change_by(
+        r, takt_rate_second(r, to, room, landing, l->change * (1.0 - l->kept * high * high)));
 }
 
-/* Along |r'| = L (1 - k r^2): the integral of r dr / (L (1 - k r^2)) is -ln(1 - k) / (2 L k). */
-static double brake_cycles_from(const struct rate *r, double rate)
+/* Along |r'| = L (1 - k r^2): the integral of r dr / (L (1 - k r^2)) is -ln(1 - k r^2) / (2 L k). */
+double takt_rate_brake_cycles(const struct rate *r)
 {
     const double k = r->limits.kept;
 
-    return -takt_maths_ln(1.0 - k * rate * rate) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
+    return -takt_maths_ln(1.0 - k) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
 }
 
-double takt_rate_brake_cycles(const struct rate *r)
-{
-    return brake_cycles_from(r, 1.0);
-}
-
+/* r^2 = (1 - exp(-2 L k cycles)) / k */
 double takt_rate_highest(const struct rate *r, double cycles)
 {
-    double low = 0.0;
-    double high = 1.0;
+    const double k = r->limits.kept;
+    const double way = cycles - BRAKE_MORE_CYCLES;
 
-    if (takt_rate_brake_cycles(r) <= cycles) {
-        return 1.0;
-    }
-    for (int i = 0; i < HIGHEST_HALVINGS; i++) {
-        const double middle = 0.5 * (low + high);
-
-        if (brake_cycles_from(r, middle) <= cycles) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
+    TAKT_ASSERT(way > 0.0);
+    return maths_min(maths_sqrt((1.0 - takt_maths_exp(-2.0 * r->limits.change * k * way)) / k),
+                     1.0);
 }

@@ -21,6 +21,7 @@
 #ifndef TAKT_REPLAY_RATE_H
 #define TAKT_REPLAY_RATE_H
 
+#include "base/maths.h"
 #include "plan/limits.h"
 
 #include <stdbool.h>
@@ -51,9 +52,12 @@ double takt_rate_step(struct rate *r, double to);
 
 /*
  * How much the change changes in a cycle on the way to the rate to: by room at most, and to a
- * change of most at most.
+ * change of most at most; landing: by which it can change when it comes there.
  */
-double takt_rate_second(const struct rate *r, double to, double room, double most);
+double takt_rate_second(const struct rate *r, double to, double room, double landing, double most);
+
+/* A cycle in which the change changes by second; returns how far on the curve it leads. */
+double takt_rate_change_by(struct rate *r, double second);
 
 /*
  * How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most.
@@ -65,6 +69,12 @@ double takt_rate_brake_cycles(const struct rate *r);
  * or more.
  */
 double takt_rate_highest(const struct rate *r, double cycles);
+
+/* Is it so near to the rate to that one cycle leads there? room: by which the change can change. */
+static inline bool rate_settles(const struct rate *r, double to, double room)
+{
+    return maths_abs(to - r->now) <= 0.5 * room && maths_abs(r->change) <= room;
+}
 
 /* Does it stand? */
 static inline bool rate_rests(const struct rate *r)

@@ -88,11 +88,35 @@ static void test_coming_to_rest_leads_no_farther_than_said(void)
     }
 }
 
+/* A stream of which so much is known need not be slower than that, either. */
+static void test_from_the_highest_rate_it_comes_to_rest_on_the_way_that_is_known(void)
+{
+    for (int machine = 0; machine < MACHINES; machine++) {
+        const struct plan_limits limits = random_rate_machine();
+        const double known = random_rate_between(500.0, 4000.0);
+        struct rate r;
+        double way = 0.0;
+
+        takt_rate_init(&r, &limits, RANDOM_RATE_KEPT);
+        const double highest = takt_rate_highest(&r, known);
+
+        TEST_ASSERT_TRUE(highest > 0.0);
+        TEST_ASSERT_EQUAL(takt_rate_brake_cycles(&r) <= known, highest == 1.0);
+        takt_rate_set(&r, highest);
+        for (int i = 0; i < SETTLED && !rate_rests(&r); i++) {
+            way += takt_rate_step(&r, 0.0);
+        }
+        TEST_ASSERT_TRUE(rate_rests(&r));
+        TEST_ASSERT_TRUE(way <= known);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_no_change_of_the_rate_needs_more_than_the_limits);
     RUN_TEST(test_every_rate_is_come_to_and_kept);
     RUN_TEST(test_coming_to_rest_leads_no_farther_than_said);
+    RUN_TEST(test_from_the_highest_rate_it_comes_to_rest_on_the_way_that_is_known);
     return UNITY_END();
 }
