@@ -1,4 +1,4 @@
-#include "smooth/bands.h"
+#include "smooth/relax_parts.h"
 
 #include "base/assert.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/assert.h"
 #include "base/maths.h"
-#include "smooth/fill.h"
+#include "smooth/parts.h"
 
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05

@@ -2,7 +2,7 @@
  * The window is filled with samples along the route, as far as that is known: at an interval that
  * fits the axes that move on it.
  */
-#include "smooth/fill.h"
+#include "smooth/parts.h"
 
 #include "base/assert.h"
 #include "base/maths.h"

@@ -77,16 +77,6 @@ static struct parts near_point(const struct route *r, const float start[], const
     return (struct parts){single_max(closest - half, 0.0f), single_min(closest + half, 1.0f)};
 }
 
-static float length_of(const struct route *r, const float way[])
-{
-    float square = 0.0f;
-
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        square += way[i] * way[i];
-    }
-    return single_sqrt(square);
-}
-
 /*
  * Where a link ends: on a line where nothing can be near the chord any more, on a bend where it is
  * no longer straight.
@@ -245,7 +235,7 @@ void takt_order_start(struct order *o, double at_mm, uint32_t element)
 void takt_order_go(struct order *o, const struct route *r, const struct order_chord *chord)
 {
     const struct order before = *o;
-    const float chord_mm = length_of(r, chord->way);
+    const float chord_mm = route_length(r, chord->way);
     struct link l = {.element = before.element, .at_mm = route_element(r, r->first)->start_mm};
     struct parts start = nowhere;
     unsigned next = 0;

@@ -1,8 +1,7 @@
-#include "smooth/piece.h"
+#include "smooth/parts.h"
 
 #include "base/assert.h"
 #include "base/maths.h"
-#include "smooth/search.h"
 
 #include <string.h>
 

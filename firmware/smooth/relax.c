@@ -14,9 +14,7 @@
 #include "smooth/relax.h"
 
 #include "base/assert.h"
-#include "smooth/bands.h"
-#include "smooth/relax_corners.h"
-#include "smooth/relax_scale.h"
+#include "smooth/relax_parts.h"
 #include "smooth/single.h"
 
 #include <string.h>
@@ -69,7 +67,6 @@ static void look_ahead(struct relax_ahead *a, const struct route *r,
 static void set_closest(struct relax *x, const struct window *w, const struct route *r, unsigned i,
                         float tolerance_mm, struct relax_ahead *ahead)
 {
-    static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
     struct route_closest closest = {.element = w->element[i], .at_mm = w->at_mm[i]};
     struct window_spot spot;
     double from;
@@ -77,7 +74,7 @@ static void set_closest(struct relax *x, const struct window *w, const struct ro
     double p[AXIS_COUNT];
 
     takt_window_reach(w, i, &from, &to);
-    takt_window_spot(w, r, i - 1, at_sample, &spot);
+    takt_window_beside(w, r, i, &spot);
     takt_window_place(w, r, &spot, p);
     takt_route_closest(r, p, from, to, &closest);
     look_ahead(ahead, r, &closest, tolerance_mm);

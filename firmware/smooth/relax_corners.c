@@ -1,5 +1,5 @@
 /* The corners of the route in a window, each with the place of the curve that passes it. */
-#include "smooth/relax_corners.h"
+#include "smooth/relax_parts.h"
 
 #include "base/assert.h"
 #include "smooth/chord.h"

@@ -1,5 +1,5 @@
 /* What the rows of a window count beside each other. */
-#include "smooth/relax_scale.h"
+#include "smooth/relax_parts.h"
 
 #include "base/assert.h"
 #include "smooth/single.h"

@@ -126,6 +126,16 @@ static inline float route_dot(const struct route *r, const lanes a[], const lane
     return dot;
 }
 
+static inline float route_length(const struct route *r, const float weighted[])
+{
+    float square = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        square += weighted[i] * weighted[i];
+    }
+    return __builtin_sqrtf(square);
+}
+
 /* A place on the route near to a point. */
 struct route_closest {
     uint32_t element;            /* index of an element */

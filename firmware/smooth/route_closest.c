@@ -19,16 +19,6 @@
 #define SLIGHT       0.5f
 #define SLIGHT_REACH 1.25f
 
-static void set_distance(const struct route *r, struct route_closest *f)
-{
-    float square = 0.0f;
-
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        square += f->off[i] * f->off[i];
-    }
-    f->distance_mm = single_sqrt(square);
-}
-
 /* x + (start - x) + s/length (end - start), s from the nearest place of the whole line. */
 static void closest_on_line(const struct route *r, uint32_t index, const double x[], float low,
                             float high, struct route_closest *f)
@@ -106,7 +96,7 @@ static void closest_on(const struct route *r, uint32_t index, const double x[], 
     } else {
         closest_on_line(r, index, x, (float)low, (float)high, f);
     }
-    set_distance(r, f);
+    f->distance_mm = route_length(r, f->off);
 }
 
 /*

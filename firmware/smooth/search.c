@@ -1,8 +1,7 @@
 /* The search for a curve in the window: relaxed, timed and verified. */
-#include "smooth/search.h"
+#include "smooth/parts.h"
 
 #include "base/assert.h"
-#include "smooth/piece.h"
 #include "smooth/single.h"
 
 /* Rounds of smoothing and timing a window. A chain's first one begins from nothing. */

@@ -3,12 +3,9 @@
 #include "base/assert.h"
 #include "smooth/exact.h"
 #include "smooth/exact_time.h"
-#include "smooth/fill.h"
 #include "smooth/head.h"
-#include "smooth/piece.h"
-#include "smooth/search.h"
+#include "smooth/parts.h"
 #include "smooth/single.h"
-#include "smooth/trials.h"
 #include "smooth/worth.h"
 
 /* What a microcontroller is ready to give for smoothing. */

@@ -12,7 +12,7 @@
  * falls. What is exceeded to begin with may stay so far off but no farther, and is drawn inside. So
  * every iteration keeps what the one before kept.
  */
-#include "smooth/tempo_begin.h"
+#include "smooth/tempo.h"
 
 #include "base/assert.h"
 #include "smooth/single.h"

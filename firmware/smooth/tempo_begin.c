@@ -1,5 +1,5 @@
 /* What the search for the best tempo begins with: the window's differences, and what limits b. */
-#include "smooth/tempo_begin.h"
+#include "smooth/tempo.h"
 
 #include "base/assert.h"
 #include "smooth/single.h"

@@ -2,13 +2,10 @@
  * From rest every way is open: curves are looked for in parts of the tolerance and at shorter
  * intervals, gone along window by window, and the quickest is taken.
  */
-#include "smooth/trials.h"
+#include "smooth/parts.h"
 
 #include "base/assert.h"
 #include "base/maths.h"
-#include "smooth/fill.h"
-#include "smooth/piece.h"
-#include "smooth/search.h"
 #include "smooth/single.h"
 
 #include <string.h>

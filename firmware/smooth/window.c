@@ -335,6 +335,14 @@ void takt_window_spot(const struct window *w, const struct route *r, unsigned i,
     }
 }
 
+void takt_window_beside(const struct window *w, const struct route *r, unsigned i,
+                        struct window_spot *s)
+{
+    static const float weight[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
+
+    takt_window_spot(w, r, i - 1, weight, s);
+}
+
 double takt_window_at(const struct window *w, unsigned i, const float weight[4])
 {
     const double *at = w->at_mm + i;
@@ -413,10 +421,9 @@ static void stop_at_corner(const struct window *w, const struct route *r, unsign
  */
 void takt_window_locate(struct window *w, const struct route *r)
 {
-    static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
     struct window_spot before;
 
-    takt_window_spot(w, r, SMOOTH_FIXED - 2, at_sample, &before);
+    takt_window_beside(w, r, SMOOTH_FIXED - 1, &before);
     for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
         struct route_closest closest = {.element = w->element[i], .at_mm = w->at_mm[i]};
         struct window_spot here;
@@ -425,7 +432,7 @@ void takt_window_locate(struct window *w, const struct route *r)
         double p[AXIS_COUNT];
 
         takt_window_reach(w, i, &from, &to);
-        takt_window_spot(w, r, i - 1, at_sample, &here);
+        takt_window_beside(w, r, i, &here);
         takt_window_place(w, r, &here, p);
         takt_route_closest(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]),
                            &closest);

@@ -93,6 +93,9 @@ void takt_window_sample(const struct window *w, const struct route *r, unsigned 
 void takt_window_spot(const struct window *w, const struct route *r, unsigned i,
                       const float weight[4], struct window_spot *s);
 double takt_window_at(const struct window *w, unsigned i, const float weight[4]);
+/* The curve beside sample i. */
+void takt_window_beside(const struct window *w, const struct route *r, unsigned i,
+                        struct window_spot *s);
 /* A spot in mm; a place in mm as the nearest spot. */
 void takt_window_place(const struct window *w, const struct route *r, const struct window_spot *s,
                        double p[]);

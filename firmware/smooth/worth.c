@@ -2,7 +2,7 @@
 
 #include "base/assert.h"
 #include "smooth/exact_time.h"
-#include "smooth/piece.h"
+#include "smooth/parts.h"
 #include "smooth/single.h"
 
 static void set_piece(const struct worth_window *now, unsigned i, struct worth_pace *p)

@@ -5,7 +5,6 @@
 #include "smooth/tempo.h"
 
 #include "base/maths.h"
-#include "smooth/tempo_begin.h"
 
 #include <string.h>
 #include <unity.h>
