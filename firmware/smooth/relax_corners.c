@@ -8,13 +8,10 @@
 #include <string.h>
 
 /*
- * Nor do those that leave the chord of two samples by a small part of the tolerance: turn times
- * spacing.
+ * Corners that leave the chord of two samples by a small part of the tolerance, turn times spacing,
+ * need no condition of their own.
  */
 #define CORNER_LEAVES 0.5f
-
-/* Corners that turn less need no condition of their own. */
-#define CORNER_MIN 0.005f
 
 /* A mean direction shorter than this belongs to a reversal. */
 #define REVERSAL 0.3f
@@ -110,8 +107,6 @@ void takt_relax_find_corners(struct relax_corners *c, const struct window *w, co
         if (route_element(r, e)->start_mm > w->at_mm[w->count - 2]) {
             return;
         }
-        if (route_turn(r, e) > CORNER_MIN) {
-            add_corner(c, w, r, e, tolerance_mm, &sample);
-        }
+        add_corner(c, w, r, e, tolerance_mm, &sample);
     }
 }
