@@ -97,7 +97,7 @@ double takt_rate_step(struct rate *r, double to)
         r, takt_rate_second(r, to, room, landing, l->change * (1.0 - l->kept * high * high)));
 }
 
-/* Along |r'| = L (1 - k r^2): the integral of r dr / (L (1 - k r^2)) is -ln(1 - k r^2) / (2 L k). */
+/* Along |r'| = L (1 - k r^2) the way from r to rest is -ln(1 - k r^2) / (2 L k). */
 double takt_rate_brake_cycles(const struct rate *r)
 {
     const double k = r->limits.kept;

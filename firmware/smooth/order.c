@@ -154,8 +154,8 @@ static bool is_corner(const struct route *r, uint32_t element)
 
 /*
  * The parts of the chord at which the end of a link is passed, when its start is at some: not
- * before that, and in the same instant if no way may stay. All that is near lies before the end of a
- * line from which the route does not go on.
+ * before that, and in the same instant if no way may stay. Where a line ends before its element
+ * does, all that is near lies before that end.
  */
 static struct parts pass_end(const struct route *r, const struct order_chord *chord,
                              const struct link *l, struct parts start)

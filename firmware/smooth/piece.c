@@ -1,3 +1,7 @@
+/*
+ * What is handed on: the piece of the curve that is taken next, and those in which the axes stand
+ * before and behind a curve.
+ */
 #include "smooth/parts.h"
 
 #include "base/assert.h"

@@ -183,5 +183,6 @@ bool bench_is_on_thread(const struct bench *b)
     const double rev = b->sync.sense * b->true_rev[BENCH_AHEAD];
 
     return b->is_locked && b->sync.phase == SPINDLE_SYNC_FOLLOWS &&
-           b->sync.follower.state == FOLLOWER_FOLLOWS && takt_lead_in_is_over(&b->sync.lead_in, rev);
+           b->sync.follower.state == FOLLOWER_FOLLOWS &&
+           takt_lead_in_is_over(&b->sync.lead_in, rev);
 }
