@@ -179,11 +179,8 @@ static struct parts pass_end(const struct route *r, const struct order_chord *ch
     return is_there(near) ? near : nowhere;
 }
 
-/*
- * Where there are too many, the lowest goes, unless the next lies beyond the place thought to be
- * beside the curve.
- */
-static void add_span(struct order *o, double first_mm, double last_mm, double believed_mm)
+/* Where there are too many, the lowest goes. */
+static void add_span(struct order *o, double first_mm, double last_mm)
 {
     TAKT_ASSERT(first_mm <= last_mm && o->count <= ORDER_SPANS);
     if (o->count > 0 && o->span[o->count - 1].last_mm == first_mm) {
@@ -191,9 +188,6 @@ static void add_span(struct order *o, double first_mm, double last_mm, double be
         return;
     }
     if (o->count == ORDER_SPANS) {
-        if (o->span[1].first_mm > believed_mm) {
-            return;
-        }
         o->count--;
         for (unsigned i = 0; i < o->count; i++) {
             o->span[i] = o->span[i + 1];
@@ -213,8 +207,7 @@ static void add_link(struct order *o, const struct route *r, const struct order_
 
     if (is_there(near)) {
         add_span(o, l->at_mm + (double)near.first * way_mm,
-                 near.last < 1.0f ? l->at_mm + (double)near.last * way_mm : l->end_mm,
-                 chord->believed_mm);
+                 near.last < 1.0f ? l->at_mm + (double)near.last * way_mm : l->end_mm);
     }
 }
 

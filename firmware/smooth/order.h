@@ -35,7 +35,6 @@ struct order_chord {
     float way[SMOOTH_SLOTS_MAX]; /* weighted */
     float within_mm;             /* how near the curve must be to the route, */
     float corner_mm;             /* and to its corners and bends */
-    double believed_mm;          /* place on the route thought to be beside its end */
     float least_mm_s[2];         /* slower motions, linear and rotary, it may but pass at once */
 };
 

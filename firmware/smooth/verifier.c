@@ -250,9 +250,7 @@ static unsigned follow_piece(struct window *w, const struct route *r, unsigned p
                              struct order *order)
 {
     const struct look look = look_of(w, r, piece);
-    struct order_chord chord = {.within_mm = look.within_mm,
-                                .corner_mm = look.corner_mm,
-                                .believed_mm = w->at_mm[piece + 2]};
+    struct order_chord chord = {.within_mm = look.within_mm, .corner_mm = look.corner_mm};
     struct verifier_need need;
     struct window_spot a;
     float weight[4];

@@ -84,7 +84,6 @@ static void go_to(double x, double y, double chord_mm)
         chord.from[1] = place_mm[1] + dy * i / chords;
         chord.way[0] = (float)(dx / chords);
         chord.way[1] = (float)(dy / chords);
-        chord.believed_mm = 0.0;
         takt_order_go(&order, &route, &chord);
     }
     place_mm[0] = x;
