@@ -1,6 +1,6 @@
 /*
- * The linear system of the relaxation: symmetric, a diagonal and three bands on each side of it, for
- * each group of lanes.
+ * The linear system of the relaxation: symmetric, a diagonal and three bands on each side of it,
+ * for each group of lanes.
  */
 #include "smooth/relax_parts.h"
 
