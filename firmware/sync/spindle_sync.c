@@ -54,9 +54,10 @@ const struct diagnostic *takt_spindle_sync_get_alarm(const struct spindle_sync *
     return &l->alarm;
 }
 
-static bool taps(const struct spindle_sync *l)
+static void command(struct spindle_sync *l, double rpm)
 {
-    return l->tap.phase != TAP_NONE;
+    l->commands = true;
+    l->command_rpm = rpm;
 }
 
 /* For the spindle, in the direction it was commanded: rev, rev/s. */
@@ -175,8 +176,8 @@ static bool check_length(struct spindle_sync *l, double rev_s)
     const double pitch_mm = l->at.pitch_mm;
     const struct brake_state at_speed = {.v_mm_s = pitch_mm * rev_s};
     const double in_mm = 0.5 * pitch_mm * l->lead_in.way_rev;
-    const double out_mm = taps(l) ? pitch_mm * takt_tap_turns(&l->tap)
-                                  : takt_brake_reach(&at_speed, &l->chain.limits);
+    const double out_mm = tap_is(&l->tap) ? pitch_mm * takt_tap_turns(&l->tap)
+                                          : takt_brake_reach(&at_speed, &l->chain.limits);
     const bool fits = l->at.end_mm >= in_mm && l->chain.end_mm >= in_mm + out_mm;
 
     if (!fits) {
@@ -213,11 +214,11 @@ static void start(struct spindle_sync *l)
     l->lead_in.pitch_mm = l->at.pitch_mm;
     l->lead_in.way_rev = takt_lead_in_way(l->at.pitch_mm, lead_in_speed(l, now.speed),
                                           &l->chain.limits, l->config.cycle_s);
-    if (taps(l)) {
+    if (tap_is(&l->tap)) {
         set_tap(l);
     }
     if (!check_speed(l, l->at.pitch_mm, now.speed) ||
-        (taps(l) && !check_speed(l, l->at.pitch_mm, l->tap.out_rev_s)) ||
+        (tap_is(&l->tap) && !check_speed(l, l->at.pitch_mm, l->tap.out_rev_s)) ||
         !check_length(l, now.speed)) {
         return;
     }
@@ -326,7 +327,7 @@ static struct follower_end end_of(const struct spindle_sync *l)
         return (struct follower_end){.sense = -1.0, .x_mm = 0.0};
     }
     return (struct follower_end){
-        .sense = 1.0, .x_mm = l->chain.end_mm + (taps(l) ? l->config.tolerance_mm : 0.0)};
+        .sense = 1.0, .x_mm = l->chain.end_mm + (tap_is(&l->tap) ? l->config.tolerance_mm : 0.0)};
 }
 
 /* Blocks of the angle, and of the setpoint, that have been left behind. */
@@ -349,7 +350,7 @@ static void follow_tap(struct spindle_sync *l, struct motion *m)
     const struct lock_view now = view(l, 0.0);
     const double left = (l->chain.end_mm - place_at(l, now.rev).x) / l->at.pitch_mm;
 
-    l->command_rpm = l->sense * SECONDS_PER_MINUTE * takt_tap_command(&l->tap, left, now.speed);
+    command(l, l->sense * SECONDS_PER_MINUTE * takt_tap_command(&l->tap, left, now.speed));
     if (l->tap.phase == TAP_TURNS && l->follower.at.v_mm_s <= 0.0) {
         l->tap.phase = TAP_OUT;
         takt_handover_pass_block(m);
@@ -373,7 +374,7 @@ static void follow(struct spindle_sync *l, struct motion *m, const struct motion
     if (l->follower.state == FOLLOWER_FOLLOWS) {
         takt_chain_extend(&l->chain);
         watch(l);
-    } else if (taps(l) && l->tap.phase != TAP_OUT && l->follower.state == FOLLOWER_LANDS) {
+    } else if (tap_is(&l->tap) && l->tap.phase != TAP_OUT && l->follower.state == FOLLOWER_LANDS) {
         fail(l, TAKT_ERROR_TAP_DEEP, l->config.tolerance_mm, 0.0);
     }
     if (wanted->hold == MOTION_STOPS) {
@@ -384,9 +385,9 @@ static void follow(struct spindle_sync *l, struct motion *m, const struct motion
 
     takt_follower_step(&l->follower, &target, &end);
     pass_blocks(l, m);
-    if (taps(l) && l->follower.state == FOLLOWER_STOPS) {
-        l->command_rpm = 0.0;
-    } else if (taps(l)) {
+    if (tap_is(&l->tap) && l->follower.state == FOLLOWER_STOPS) {
+        command(l, 0.0);
+    } else if (tap_is(&l->tap)) {
         follow_tap(l, m);
     }
 }
@@ -396,7 +397,7 @@ static void follow(struct spindle_sync *l, struct motion *m, const struct motion
 /* Tapped: not before the spindle turns as it did. */
 static void return_spindle(struct spindle_sync *l, struct motion *m)
 {
-    l->command_rpm = l->before_rpm;
+    command(l, l->before_rpm);
     if (is_turning(l)) {
         l->phase = SPINDLE_SYNC_IDLE;
         takt_handover_end(m);
@@ -407,7 +408,7 @@ static void return_spindle(struct spindle_sync *l, struct motion *m)
 
 static void finish(struct spindle_sync *l, struct motion *m)
 {
-    if (taps(l)) {
+    if (tap_is(&l->tap)) {
         l->phase = SPINDLE_SYNC_RETURNS;
         l->waited = 0;
         return;
@@ -479,7 +480,7 @@ enum spindle_sync_result takt_spindle_sync_cycle(struct spindle_sync *l, struct 
                                                  double commanded_rpm, struct cycle_record *record)
 {
     if (l->alarm.code != TAKT_OK) {
-        l->command_rpm = 0.0;
+        command(l, 0.0);
     }
     if (l->alarm.code != TAKT_OK &&
         (l->phase != SPINDLE_SYNC_FOLLOWS || follower_rests(&l->follower))) {

@@ -11,7 +11,6 @@
 #define TAKT_SYNC_SPINDLE_SYNC_H
 
 #include "base/error.h"
-#include "base/maths.h"
 #include "hal/inputs.h"
 #include "motion/motion.h"
 #include "sync/angle.h"
@@ -58,8 +57,9 @@ struct spindle_sync {
     struct lead_in lead_in;
     struct follower follower;
     struct tap tap;
-    double before_rpm;   /* commanded before tapping */
-    double command_rpm;  /* in this cycle; infinite: none */
+    double before_rpm; /* commanded before tapping */
+    bool commands;     /* in this cycle */
+    double command_rpm;
     uint32_t next_block; /* a thread that begins with this block goes on with this zero angle */
     double next_zero_rev;
     struct diagnostic alarm; /* TAKT_OK: none */
@@ -84,7 +84,7 @@ static inline void spindle_sync_measure(struct spindle_sync *l,
                                         const struct spindle_feedback *spindle)
 {
     l->spindle = spindle;
-    l->command_rpm = MATHS_INFINITY;
+    l->commands = false;
     angle_measure(&l->angle, spindle->angle_rev);
 }
 
@@ -99,8 +99,10 @@ enum spindle_sync_result takt_spindle_sync_cycle(struct spindle_sync *l, struct 
 /* Does this cycle command the spindle? Then *rpm is the speed, signed. */
 static inline bool spindle_sync_get_command(const struct spindle_sync *l, double *rpm)
 {
-    *rpm = l->command_rpm < MATHS_INFINITY ? l->command_rpm : *rpm;
-    return l->command_rpm < MATHS_INFINITY;
+    if (l->commands) {
+        *rpm = l->command_rpm;
+    }
+    return l->commands;
 }
 
 const struct diagnostic *takt_spindle_sync_get_alarm(const struct spindle_sync *l);

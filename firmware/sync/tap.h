@@ -5,6 +5,8 @@
 #ifndef TAKT_SYNC_TAP_H
 #define TAKT_SYNC_TAP_H
 
+#include <stdbool.h>
+
 enum tap_phase {
     TAP_NONE, /* a thread */
     TAP_IN,
@@ -18,6 +20,12 @@ struct tap {
     double out_rev_s;   /* > 0 */
     double ramp_rev_s2; /* by which the spindle's drive changes its speed, > 0 */
 };
+
+/* Is it one, and no thread? */
+static inline bool tap_is(const struct tap *t)
+{
+    return t->phase != TAP_NONE;
+}
 
 /* Turns that turning back takes at least. */
 double takt_tap_turns(const struct tap *t);
