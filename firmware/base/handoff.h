@@ -42,18 +42,4 @@ static inline void handoff_set_count(uint32_t *count, uint32_t value)
     *(volatile uint32_t *)count = value;
 }
 
-static inline bool handoff_get_flag(const bool *flag)
-{
-    const bool value = *(const volatile bool *)flag;
-
-    __atomic_signal_fence(__ATOMIC_ACQUIRE);
-    return value;
-}
-
-static inline void handoff_set_flag(bool *flag, bool value)
-{
-    __atomic_signal_fence(__ATOMIC_RELEASE);
-    *(volatile bool *)flag = value;
-}
-
 #endif

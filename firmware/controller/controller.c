@@ -113,7 +113,7 @@ static void follow_spindle(struct controller *c, const struct spindle_feedback *
 /* M6: the changer brings the tool, if there is one. */
 static void follow_changer(struct controller *c)
 {
-    const bool stands = c->state == CONTROLLER_RUNNING && c->motion.changes_tool;
+    const bool stands = c->state == CONTROLLER_RUNNING && c->motion.end == MOTION_CHANGES_TOOL;
     bool is_changed = false;
 
     c->changer.is_there = takt_drives_find_input(&c->drives, IO_TOOL_CHANGED, &is_changed);
@@ -133,6 +133,13 @@ static enum motion_hold hold_of(const struct controller *c, const struct inputs 
     return in->feed_stop ? MOTION_HOLDS : in->feed_hold ? MOTION_HOLD_ASKED : MOTION_GOES;
 }
 
+static enum motion_obeys obeys_of(const struct inputs *in)
+{
+    return !in->program_stop   ? MOTION_OBEYS_NONE
+           : in->optional_stop ? MOTION_OBEYS_M0_AND_M1
+                               : MOTION_OBEYS_M0;
+}
+
 static struct motion_operator operator_of(const struct controller *c, const struct inputs *in)
 {
     return (struct motion_operator){
@@ -141,10 +148,10 @@ static struct motion_operator operator_of(const struct controller *c, const stru
         .rapid_ratio = maths_clamp(0.01 * in->rapid_override_percent, 0.0, 1.0),
         .hold = hold_of(c, in),
         .single_block = in->single_block,
-        .program_stops = in->program_stop,
-        .optional_stops = in->optional_stop,
-        .wait = c->spindle.waits,
-        .settles = !controller_shape_is_settled(c),
+        .obeys = obeys_of(in),
+        .stay = !controller_shape_is_settled(c) ? MOTION_SETTLES
+                : c->spindle.waits              ? MOTION_WAITS
+                                                : MOTION_STAYS_NOT,
         .tool_waits = tool_changer_waits(&c->changer),
         .measures = true,
         .spindle_rev_s = c->spindle.rev_s,

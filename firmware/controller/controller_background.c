@@ -151,7 +151,7 @@ static bool can_read(struct controller *c)
 /* A text that comes slowly begins to be driven when as much of it is there as is ever looked at. */
 static bool waits_for_text(struct controller *c)
 {
-    return c->program_late && !c->motion.has_ceiling &&
+    return c->program_late && !motion_has_ceiling(&c->motion) &&
            (!c->program_begins || takt_motion_ahead(&c->motion) == 0);
 }
 

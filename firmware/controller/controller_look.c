@@ -48,7 +48,7 @@ uint32_t takt_controller_get_answers(const struct controller *c, struct program_
 bool takt_controller_is_starved(const struct controller *c)
 {
     return (c->replays && c->replay.waits) ||
-           (c->program_late && c->motion.has_ceiling && c->path.first == c->path.closed);
+           (c->program_late && motion_has_ceiling(&c->motion) && c->path.first == c->path.closed);
 }
 
 uint64_t takt_controller_get_late(const struct controller *c)

@@ -78,7 +78,7 @@ void takt_controller_set_coolant(struct controller *c, bool flood, bool on)
 
 bool takt_controller_passed_stop(const struct controller *c)
 {
-    return c->has_record && c->motion.stops;
+    return c->has_record && c->motion.end == MOTION_STOPPED;
 }
 
 bool takt_controller_is_settled(const struct controller *c)

@@ -27,7 +27,7 @@ static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
 
 const struct ceiling_request *takt_motion_wanted(struct motion *m)
 {
-    const bool wanted = handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built);
+    const bool wanted = handoff_get_count(&m->exchange) == MOTION_CEILING_WANTED;
 
     TAKT_ASSERT(m->active < 2);
     m->path->spare = wanted ? 1 - m->active : PATH_NO_SPARE;
@@ -69,8 +69,8 @@ static struct ceiling_request take_request(const struct motion *m, uint32_t *res
  */
 static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t reference)
 {
-    TAKT_ASSERT(c->complete || c->count > 0);
-    if (c->complete) {
+    TAKT_ASSERT(c->behind == m->made_closed || c->count > 0);
+    if (c->behind == m->made_closed) {
         return m->made_closed == m->path->closed;
     }
     return path_mm(c->origin, reference) < RENEW_PART * c->end_mm[c->count - 1];
@@ -90,10 +90,10 @@ static bool is_unchanged(const struct motion *m, const struct ceiling_request *r
 {
     const struct ceiling *c = ceiling_of(m, m->active);
 
-    return m->made_holds && reaches_far(m, c, request->reference) &&
-           m->made.feed_ratio == request->feed_ratio &&
+    return m->made.feed_ratio == request->feed_ratio &&
            m->made.rapid_ratio == request->rapid_ratio &&
-           m->made.spindle_rev_s == request->spindle_rev_s;
+           m->made.spindle_rev_s == request->spindle_rev_s &&
+           reaches_far(m, c, request->reference);
 }
 
 void takt_motion_build(struct motion *m)
@@ -101,22 +101,23 @@ void takt_motion_build(struct motion *m)
     uint32_t restarts;
     const struct ceiling_request request = take_request(m, &restarts);
 
-    TAKT_ASSERT(m->wanted && !m->built);
+    TAKT_ASSERT(m->exchange == MOTION_CEILING_WANTED);
     m->path->spare = PATH_NO_SPARE;
-    m->made_holds = m->made_holds && !is_dropped(m, restarts);
+    if (is_dropped(m, restarts)) {
+        m->made.feed_ratio = 0.0;
+    }
     if (is_dropped(m, restarts) || is_unchanged(m, &request)) {
-        handoff_set_flag(&m->wanted, false);
+        handoff_set_count(&m->exchange, MOTION_CEILING_FREE);
         return;
     }
     m->built_restarts = restarts;
     takt_ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
     m->made = request;
     m->made_closed = m->path->closed;
-    m->made_holds = true;
-    if (!m->has_ceiling) {
+    if (!motion_has_ceiling(m)) {
         (void)path_first(m->path); /* until the first ceiling is there, the cycle reads none */
     }
-    handoff_set_flag(&m->built, true);
+    handoff_set_count(&m->exchange, MOTION_CEILING_BUILT);
 }
 
 /* -- the cycle -- */
@@ -124,20 +125,19 @@ void takt_motion_build(struct motion *m)
 /* A ceiling of a path that has been dropped since is of no use. */
 static void offer_ceiling(struct motion *m)
 {
-    TAKT_ASSERT(m->built);
-    m->made_holds = m->built_restarts == m->restarts;
-    if (m->made_holds) {
+    TAKT_ASSERT(m->exchange == MOTION_CEILING_BUILT);
+    if (m->built_restarts == m->restarts) {
         m->active = 1 - m->active;
-        m->has_ceiling = true;
         takt_reference_set_ceiling(&m->reference, ceiling_of(m, m->active));
+    } else {
+        m->made.feed_ratio = 0.0;
     }
-    handoff_set_flag(&m->wanted, false);
-    handoff_set_flag(&m->built, false);
+    handoff_set_count(&m->exchange, MOTION_CEILING_FREE);
 }
 
 void takt_motion_prepare(struct motion *m)
 {
-    if (!m->has_ceiling && m->built) {
+    if (!motion_has_ceiling(m) && m->exchange == MOTION_CEILING_BUILT) {
         offer_ceiling(m);
     }
     (void)reference_take(&m->reference);
@@ -181,7 +181,7 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->request.cycles = m->reference.cycles;
     m->asked++;
     handoff_set_count(&m->path->kept, m->path->first);
-    handoff_set_flag(&m->wanted, true);
+    handoff_set_count(&m->exchange, MOTION_CEILING_WANTED);
 }
 
 /*
@@ -193,27 +193,28 @@ static void note_refused(struct motion *m)
     TAKT_ASSERT(m->active < 2);
     if (m->reference.here.ceiling == path_ceiling(m->path, 1 - m->active)) {
         m->active = 1 - m->active;
-        m->made_holds = false;
+        m->made.feed_ratio = 0.0;
     }
 }
 
 void takt_motion_exchange(struct motion *m, const struct motion_operator *wanted)
 {
-    if (!m->has_ceiling || m->cycles % MOTION_EXCHANGE_CYCLES == 0) {
-        if (m->built) {
+    const bool due = !motion_has_ceiling(m) || m->cycles % MOTION_EXCHANGE_CYCLES == 0;
+
+    if (due && m->exchange == MOTION_CEILING_WANTED) {
+        m->late++;
+    } else if (due) {
+        if (m->exchange == MOTION_CEILING_BUILT) {
             offer_ceiling(m);
-        } else if (m->wanted) {
-            m->late++;
         }
-        m->asks = true;
+        m->exchange = MOTION_CEILING_ASKED;
     }
     m->busy = m->busy || m->reference.coming.ceiling != NULL;
     if (reference_take(&m->reference)) {
         return;
     }
     note_refused(m);
-    if (m->asks) {
+    if (due || m->exchange == MOTION_CEILING_ASKED) {
         ask(m, wanted);
-        m->asks = false;
     }
 }

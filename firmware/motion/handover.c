@@ -46,6 +46,6 @@ void takt_handover_end(struct motion *m)
     m->setpoint = m->reference.at;
     m->feed = 0.0;
     m->at = b->curve.end;
-    m->done = true;
+    m->end = MOTION_ARRIVED;
     m->rested = 0;
 }

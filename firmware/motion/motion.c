@@ -29,11 +29,10 @@ void takt_motion_init(struct motion *m, struct path *path, const struct point *s
     m->cycle_s = path->limits.cycle_s;
     m->at = *start;
     m->setpoint = path->position;
-    m->proportional = proportional;
     takt_reference_init(&m->reference, path->limits.profile, path->position);
     takt_average_start(&m->mover.average, path->limits.profile, 1, path->position, 0);
     m->rested = 1;
-    m->wanted = true;
+    m->exchange = MOTION_CEILING_WANTED;
     m->request = (struct ceiling_request){.reference = m->reference.at,
                                           .span = m->reference.span,
                                           .cycles = 1,
@@ -61,16 +60,6 @@ static bool is_wait_over(const struct motion *m, enum move_kind kind)
            (double)m->waited >= takt_maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
 }
 
-static bool turns_rotary(const struct block *b)
-{
-    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
-        if (b->curve.slope.at[i] != 0.0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool is_handed_over(const struct motion *m, const struct block *b)
 {
     if (move_is_synchronized(&b->move)) {
@@ -78,7 +67,7 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
     }
     return b->move.kind != MOVE_PROBE &&
            (m->hands_over == MOTION_HANDS_OVER_ALL ||
-            (m->hands_over == MOTION_HANDS_OVER_LINEAR && !turns_rotary(b)));
+            (m->hands_over == MOTION_HANDS_OVER_LINEAR && !takt_block_turns(b)));
 }
 
 /* M0, or M1 where the operator wants it. */
@@ -87,12 +76,12 @@ static bool is_program_stop(const struct motion *m, const struct motion_operator
     struct move move;
 
     TAKT_ASSERT(m->path->first != m->path->pushed);
-    if (!wanted->program_stops || path_at(m->path, m->path->first)->motion ||
+    if (wanted->obeys == MOTION_OBEYS_NONE || path_at(m->path, m->path->first)->motion ||
         takt_path_kind(m->path, m->path->first) != MOVE_STOP) {
         return false;
     }
     takt_path_read_move(m->path, m->path->first, &move);
-    return !move.optional || wanted->optional_stops;
+    return !move.optional || wanted->obeys == MOTION_OBEYS_M0_AND_M1;
 }
 
 /* In a hold: is the oldest block none in which the axes can be held? It is left where it is. */
@@ -114,21 +103,20 @@ static enum motion_result rest(struct motion *m)
 static enum motion_result serve(struct motion *m, const struct motion_operator *wanted,
                                 const struct block **block)
 {
-    bool held = wanted->hold != MOTION_GOES && !m->changes_tool;
+    bool held = wanted->hold != MOTION_GOES && m->end != MOTION_CHANGES_TOOL;
 
     *block = NULL;
-    m->changes_tool = m->stops = false;
-    if (m->done && wanted->settles) {
+    m->end = m->end == MOTION_ARRIVED ? MOTION_ARRIVED : MOTION_UNDER_WAY;
+    if (m->end == MOTION_ARRIVED && wanted->stay == MOTION_SETTLES) {
         return rest(m);
     }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
-        if (m->done && !is_kept(m, held)) {
-            m->stops = is_program_stop(m, wanted);
+        if (m->end == MOTION_ARRIVED && !is_kept(m, held)) {
+            m->end = is_program_stop(m, wanted) ? MOTION_STOPPED : MOTION_UNDER_WAY;
             takt_path_pass(m->path);
-            m->done = false;
             held = wanted->hold != MOTION_GOES;
         }
-        if (m->stops || is_kept(m, held)) {
+        if (m->end == MOTION_STOPPED || is_kept(m, held)) {
             return rest(m);
         }
         if (m->path->first == m->path->closed) {
@@ -145,13 +133,15 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
         if (kind == MOVE_END) {
             return MOTION_DONE;
         }
-        m->changes_tool = waits_for_tool(m, kind, wanted->tool_waits);
-        if (m->changes_tool || !is_wait_over(m, kind)) {
+        if (waits_for_tool(m, kind, wanted->tool_waits)) {
+            m->end = MOTION_CHANGES_TOOL;
+        }
+        if (m->end == MOTION_CHANGES_TOOL || !is_wait_over(m, kind)) {
             m->waited++;
             return rest(m);
         }
         m->waited = 0;
-        m->done = true;
+        m->end = MOTION_ARRIVED;
     }
     return MOTION_CYCLE;
 }
@@ -236,10 +226,13 @@ static void place(struct motion *m, const struct block *b, double local, double 
         return;
     }
     if (maths_abs(local - length) <= LANDED_UNITS && (local == length || lands(m))) {
-        m->done = ends_at_rest(m) && m->reference.standing && m->lag == 0.0;
+        const bool arrived =
+            ends_at_rest(m) && reference_stands(&m->reference) && m->lag == 0.0;
+
+        m->end = arrived ? MOTION_ARRIVED : MOTION_UNDER_WAY;
         m->rested = 0;
         record->landed =
-            (m->done || is_halted(m) || takt_span_lands(m->path, m->current)) && !b->continues;
+            (arrived || is_halted(m) || takt_span_lands(m->path, m->current)) && !b->continues;
         m->at = b->curve.end;
         return;
     }
@@ -251,8 +244,8 @@ static void place(struct motion *m, const struct block *b, double local, double 
 /* Feed on the way from one setpoint to the next, of A, B, C where they are alone. */
 static double feed_between(const struct motion *m, const struct block *b, const struct point *from)
 {
-    const int first = b->rotary ? AXIS_LINEAR_COUNT : 0;
-    const int end = b->rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
+    const int first = b->curve.rotary ? AXIS_LINEAR_COUNT : 0;
+    const int end = b->curve.rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
     float square = 0.0F;
 
     for (int i = first; i < end; i++) {
@@ -289,8 +282,8 @@ static void move_reference(struct motion *m, bool hold)
  */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
-    return m->reference.standing && m->reference.at == first_block(m)->start && m->rested > 0 &&
-           m->passed_first == m->path->first && !wanted->wait;
+    return reference_stands(&m->reference) && m->reference.at == first_block(m)->start && m->rested > 0 &&
+           m->passed_first == m->path->first && wanted->stay == MOTION_STAYS_NOT;
 }
 
 /*
@@ -349,7 +342,7 @@ static void watch(struct motion *m, const struct motion_operator *wanted, const 
         return;
     }
     m->busy = true;
-    if (!takt_watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
+    if (!takt_watch_look(m, !is_held(m, wanted) && wanted->stay != MOTION_WAITS)) {
         m->watch.line = b->move.line;
         m->ending = true;
     }
@@ -376,7 +369,7 @@ static bool end_path(struct motion *m)
     takt_reference_init(&m->reference, m->path->limits.profile, m->reference.at);
     m->setpoint = m->reference.at;
     m->rested = 0;
-    m->done = false;
+    m->end = m->end == MOTION_ARRIVED ? MOTION_UNDER_WAY : m->end;
     m->ending = false;
     handoff_set_count(&m->restarts, m->restarts + 1);
     TAKT_ASSERT(m->path->first == m->path->pushed);
@@ -390,7 +383,7 @@ void takt_motion_end_here(struct motion *m)
 
 bool takt_motion_rests(const struct motion *m)
 {
-    return m->done || m->feed == 0.0 || is_halted(m);
+    return m->end == MOTION_ARRIVED || m->feed == 0.0 || is_halted(m);
 }
 
 bool takt_motion_is_idle(const struct motion *m)
@@ -429,7 +422,7 @@ enum motion_result takt_motion_cycle(struct motion *m, const struct motion_opera
     const struct block *b;
 
     m->passed_first = m->path->first;
-    if (!m->has_ceiling && !m->built) {
+    if (!motion_has_ceiling(m) && m->exchange != MOTION_CEILING_BUILT) {
         return MOTION_NOT_YET;
     }
     m->busy = false;

@@ -63,17 +63,25 @@ enum motion_hold {
     MOTION_STOPS       /* in a thread too, which is not gone on with */
 };
 
+/* What keeps the axes at a stop? */
+enum motion_stay {
+    MOTION_STAYS_NOT,
+    MOTION_WAITS,  /* it is not left: the spindle has not reached its speed */
+    MOTION_SETTLES /* nor is it passed: what is sent has not come to it yet */
+};
+
+/* In which program stops does the cycle that passes them pass nothing behind? */
+enum motion_obeys { MOTION_OBEYS_NONE, MOTION_OBEYS_M0, MOTION_OBEYS_M0_AND_M1 };
+
 /* What the operator wants, in this cycle. */
 struct motion_operator {
     double feed_ratio;  /* of programmed feeds, 0 ... BLOCK_OVERRIDE_MAX; 0 holds */
     double rapid_ratio; /* 0 ... 1; 0 holds rapids */
     enum motion_hold hold;
-    bool single_block;   /* every motion that it can still brake in ends at rest */
-    bool program_stops;  /* the cycle that passes M0 passes nothing behind it */
-    bool optional_stops; /* nor does that of M1 */
-    bool wait;           /* does not leave a stop: the spindle has not reached its speed */
-    bool settles;        /* nor passes it: what is sent has not come to it yet */
-    bool tool_waits;     /* a tool change is not passed: the changer has not answered */
+    enum motion_stay stay;
+    enum motion_obeys obeys;
+    bool single_block; /* every motion that it can still brake in ends at rest */
+    bool tool_waits;   /* a tool change is not passed: the changer has not answered */
     bool measures; /* the spindle's speed, for feeds per revolution; else they are as commanded */
     double spindle_rev_s; /* >= 0; 0 holds them */
 };
@@ -92,6 +100,22 @@ struct motion_beside {
     struct hold hold;
 };
 
+/* At the end of the oldest block. */
+enum motion_end {
+    MOTION_UNDER_WAY,
+    MOTION_ARRIVED,      /* the next cycle passes it */
+    MOTION_CHANGES_TOOL, /* this cycle stands at a tool change that is not passed */
+    MOTION_STOPPED       /* this cycle has passed M0 or M1, and nothing behind it */
+};
+
+/* Who has the ceiling that is not in use: the cycle, but for the one that is wanted. */
+enum motion_exchange {
+    MOTION_CEILING_FREE,   /* or the background has answered that no other is needed */
+    MOTION_CEILING_ASKED,  /* the background is told so as soon as there is room */
+    MOTION_CEILING_WANTED, /* the background has it */
+    MOTION_CEILING_BUILT   /* and has made it */
+};
+
 struct motion {
     double cycle_s;
     struct path *path;
@@ -101,11 +125,8 @@ struct motion {
     double feed;           /* mm/cycle, of the setpoint */
     double feed_before[2]; /* likewise, in the two cycles before */
     double lag;            /* of the setpoint behind the trapezoidal reference, path units */
-    bool proportional;
     enum motion_held held;
-    bool done;         /* the oldest block: the next cycle passes it */
-    bool changes_tool; /* this cycle stands at a tool change that is not passed */
-    bool stops;        /* this cycle has passed M0 or M1, and nothing behind it */
+    enum motion_end end;
     /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
     bool busy;
     uint32_t current; /* the block of the last cycle */
@@ -120,17 +141,14 @@ struct motion {
         struct average average;
         struct motion_beside beside;
     } mover;
-    unsigned active;  /* the ceiling in use, of the path's two */
-    bool has_ceiling; /* there has been one */
-    bool asks;        /* the background is to be asked for one as soon as there is room */
-    uint32_t asked;   /* times it has been asked */
-    bool wanted;      /* it has been asked, and has not answered that it needs no other */
-    bool built;       /* and has made it */
+    unsigned active;   /* the ceiling in use, of the path's two */
+    uint32_t asked;    /* times the background has been asked for another one */
+    uint32_t exchange; /* enum motion_exchange */
     struct ceiling_request request;
-    uint64_t asked_leave;        /* of the piece the trapezoidal reference was in then */
-    struct ceiling_request made; /* what the last ceiling was made for, and of how many blocks */
+    uint64_t asked_leave; /* of the piece the trapezoidal reference was in then */
+    /* what the ceiling in use was made for, and of how many blocks; feed_ratio 0: there is none */
+    struct ceiling_request made;
     uint32_t made_closed;
-    bool made_holds;   /* and it is the one in use */
     uint32_t restarts; /* of the path, so that no ceiling of an old one is taken */
     uint32_t asked_restarts;
     uint32_t built_restarts;
@@ -177,6 +195,13 @@ bool takt_motion_rests(const struct motion *m);
 
 /* Where the path is not gone on along: line of the program. After MOTION_STALLED. */
 uint32_t takt_motion_stalled_line(const struct motion *m);
+
+/* Has there been a ceiling? */
+static inline bool motion_has_ceiling(const struct motion *m)
+{
+    return m->reference.here.ceiling != NULL || m->reference.coming.ceiling != NULL ||
+           m->restarts > 0;
+}
 
 /* Has everything on the path been done? */
 bool takt_motion_is_idle(const struct motion *m);

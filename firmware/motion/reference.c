@@ -15,7 +15,7 @@ void takt_reference_init(struct reference *l, enum ramp_profile profile, uint64_
     l->known = at;
     l->halt.left = at;
     takt_reference_end_blocks(l, false);
-    l->standing = true;
+    l->phase = REFERENCE_STANDS;
 }
 
 void takt_reference_stand(struct reference *l, uint64_t at)
@@ -23,14 +23,13 @@ void takt_reference_stand(struct reference *l, uint64_t at)
     TAKT_ASSERT(l->run.phase != LANDING_ACTIVE);
     l->at = at;
     l->feed = 0.0;
-    l->standing = true;
-    l->released = false;
+    l->phase = REFERENCE_STANDS;
 }
 
 void takt_reference_release(struct reference *l)
 {
-    l->released = !l->abrupt;
-    l->abrupt = false;
+    l->phase = l->since_minus < 0 ? REFERENCE_STANDS : REFERENCE_LEAVES;
+    l->since_minus = l->since_minus < 0 ? 0 : l->since_minus;
 }
 
 /* -- one cycle -- */
@@ -51,7 +50,7 @@ static void follow_landing(struct reference *l)
 }
 
 /* Cycles since something: one more, or none. */
-static uint32_t since(uint32_t cycles, bool again)
+static int32_t since(int32_t cycles, bool again)
 {
     if (again) {
         return 0;
@@ -82,7 +81,6 @@ static uint64_t whole_way(struct reference *l, double way_mm)
 
 static void go(struct reference *l, double feed)
 {
-    l->abrupt = l->abrupt && feed == 0.0;
     l->at += whole_way(l, 0.5 * (l->feed + feed));
     count_changes(l, feed - l->feed);
     l->feed = feed;
@@ -95,10 +93,12 @@ static void go(struct reference *l, double feed)
  */
 static void come_to_rest(struct reference *l, uint64_t position)
 {
-    l->abrupt = l->at == position;
+    const bool abrupt = l->at == position;
+
     l->at = position;
     l->owed_mm = 0.0;
     count_changes(l, -1.0);
+    l->since_minus -= abrupt ? 1 : 0;
     l->feed = 0.0;
 }
 
@@ -151,7 +151,7 @@ static void run_on(struct reference *l, uint64_t setpoint, bool hold)
     if (b.rest || stops || b.feed < l->feed - reference_change_min(b.a, l->feed)) {
         slow_down(l, &b);
     } else {
-        go(l, hold || l->here.late ? l->feed : takt_reference_speed_up(l, b.at_mm, low));
+        go(l, hold || reference_is_late(&l->here) ? l->feed : takt_reference_speed_up(l, b.at_mm, low));
     }
 }
 
@@ -171,7 +171,7 @@ static void enter_span(struct reference *l, uint32_t k, uint64_t from,
 {
     TAKT_ASSERT(l->feed >= 0.0);
     start->step = path_units(l->feed);
-    l->standing = false;
+    l->phase = REFERENCE_RUNS;
     l->span = from;
     l->cycles = takt_ceiling_cycles(l->here.ceiling, k);
     TAKT_ASSERT(l->cycles >= 1 && l->cycles <= takt_ramp_profile_cycles_max(l->profile));
@@ -184,7 +184,6 @@ static void enter_span(struct reference *l, uint32_t k, uint64_t from,
     l->since_plus = REFERENCE_LONG_AGO;
     l->since_minus = REFERENCE_LONG_AGO;
     l->run.phase = LANDING_NONE;
-    l->abrupt = false;
     start->at = l->at;
     takt_reference_enter_piece(l, k);
 }
@@ -196,7 +195,7 @@ static void enter_span(struct reference *l, uint32_t k, uint64_t from,
  */
 static bool leave_stop(struct reference *l, struct reference_start *start)
 {
-    TAKT_ASSERT(l->standing && l->feed == 0.0);
+    TAKT_ASSERT(reference_stands(l) && l->feed == 0.0);
     for (unsigned i = 0; i < REFERENCE_PIECES_MAX && reference_has_piece(l); i++) {
         if (!reference_is_beyond(l->at, reference_leave_of(l, l->here.piece))) {
             enter_span(l, l->here.piece, l->at, start);
@@ -241,8 +240,8 @@ static bool has_stopped(const struct reference *l)
 /* Between two spans: may the next one be begun in this cycle? */
 static bool begin_span(struct reference *l, bool hold, struct reference_start *start)
 {
-    if (l->standing) {
-        return l->released && !hold && leave_stop(l, start);
+    if (reference_stands(l)) {
+        return l->phase == REFERENCE_LEAVES && !hold && leave_stop(l, start);
     }
     return (l->run.phase == LANDING_OVER || !(hold || l->halt.found)) && leave_junction(l, start);
 }
@@ -255,7 +254,7 @@ bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
     }
     const bool begun = begin_span(l, hold, start);
 
-    if (l->standing) {
+    if (reference_stands(l)) {
         return false;
     }
     const bool too_fast = l->halt.on && takt_reference_seek_halt(l);
@@ -270,8 +269,7 @@ bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
     }
     takt_reference_follow_pieces(l);
     if (has_stopped(l)) {
-        l->standing = true;
-        l->released = false;
+        l->phase = REFERENCE_STANDS;
         l->here.piece++;
     }
     return begun;

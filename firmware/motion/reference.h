@@ -39,9 +39,12 @@ struct reference_low {
 struct reference_place {
     const struct ceiling *ceiling; /* NULL: none */
     uint32_t piece;      /* the ceiling's count: beyond its end. At a stop: the first behind it */
-    bool late;           /* too fast for something that begins here and was not known before: */
-    uint64_t late_start; /* it starts here for the setpoint, */
-    double late_a;       /* and this acceleration still counts, as was promised */
+    /*
+     * > 0: too fast for something that begins here and was not known before; this acceleration
+     * still counts, as was promised,
+     */
+    double late_a;
+    uint64_t late_start; /* and it starts here for the setpoint */
     /*
      * from the setpoint's piece to the trapezoidal reference's, feeds rising: the first is the
      * lowest
@@ -63,8 +66,15 @@ struct reference_halt {
     double a;       /* mm/cycle2: the lowest of the blocks of the motion up to there */
 };
 
+enum reference_phase {
+    REFERENCE_RUNS,   /* in a span */
+    REFERENCE_STANDS, /* at a stop, or where the machine was switched on: between two spans */
+    REFERENCE_LEAVES  /* likewise, and may leave it */
+};
+
 struct reference {
     enum ramp_profile profile;
+    enum reference_phase phase;
     uint64_t at;
     uint64_t span;  /* where the span starts that has been begun last */
     uint64_t known; /* up to here it can follow the ceilings so far: what starts behind is new */
@@ -72,14 +82,12 @@ struct reference {
         entered; /* where what the trapezoidal reference has come to last starts for the setpoint */
     double feed; /* at the end of the last cycle */
     double owed_mm;       /* what rounding has left so far */
-    bool standing;        /* at a stop, or where the machine was switched on: between two spans */
-    bool abrupt;          /* came to rest where it was: waits for a cycle more before it moves on */
-    bool released;        /* and may leave it */
     bool follows;         /* it can do all that the ceiling asks for */
     uint32_t cycles;      /* of the first averaging box, in this span */
     double window;        /* cycles that the averages reach over */
-    uint32_t since_plus;  /* cycles since it sped up */
-    uint32_t since_minus; /* and since it slowed down */
+    int32_t since_plus; /* cycles since it sped up */
+    /* and since it slowed down; -1: to rest where it was, and waits for a cycle more */
+    int32_t since_minus;
     struct reference_place here;
     struct reference_place coming; /* in the next ceiling */
     uint64_t junction;             /* the next one to land on, where there is one */
@@ -107,6 +115,12 @@ static inline bool reference_take(struct reference *l)
 
 /* At rest, at a stop further on: what lay before it has been done by others. */
 void takt_reference_stand(struct reference *l, uint64_t at);
+
+/* At a stop, or may leave it. */
+static inline bool reference_stands(const struct reference *l)
+{
+    return l->phase != REFERENCE_RUNS;
+}
 
 /* The stop at which everything stands has been served. */
 void takt_reference_release(struct reference *l);

@@ -204,9 +204,8 @@ static void come_to(struct reference *l, struct reference_place *p, uint32_t k)
         l->entered = reference_is_beyond(start, l->entered) ? start : l->entered;
         return;
     }
-    p->late_start = p->late ? nearer(l, p->late_start, start) : start;
-    p->late_a = p->late ? p->late_a : (double)c->piece[k - 1].acceleration;
-    p->late = true;
+    p->late_start = reference_is_late(p) ? nearer(l, p->late_start, start) : start;
+    p->late_a = reference_is_late(p) ? p->late_a : (double)c->piece[k - 1].acceleration;
     l->follows = false;
     l->known = nearer(l, l->known, start);
 }
@@ -237,7 +236,7 @@ static bool is_harmless(const struct reference *l)
 {
     const struct reference_place *p = &l->here;
 
-    TAKT_ASSERT(l->here.late);
+    TAKT_ASSERT(reference_is_late(p));
     return l->feed == 0.0 ||
            (l->feed * reference_entry_cycles(l) <= path_mm(l->at, p->late_start) &&
             can_follow(l, p->ceiling, p->piece, false) &&
@@ -265,11 +264,11 @@ static void note_known(struct reference *l)
     if (l->follows || !reference_has_piece(l)) {
         return;
     }
-    if (p->late && is_harmless(l)) {
-        p->late = false;
+    if (reference_is_late(p) && is_harmless(l)) {
+        p->late_a = 0.0;
         l->entered = reference_is_beyond(p->late_start, l->entered) ? p->late_start : l->entered;
     }
-    if (!p->late && can_follow(l, p->ceiling, p->piece, false)) {
+    if (!reference_is_late(p) && can_follow(l, p->ceiling, p->piece, false)) {
         note_following(l);
     }
 }
@@ -291,7 +290,7 @@ void takt_reference_enter_piece(struct reference *l, uint32_t k)
 {
     l->here.piece = k;
     l->here.low_count = 0;
-    l->here.late = false;
+    l->here.late_a = 0.0;
     low_push(&l->here, k);
     l->entered = l->span;
     go_through_pieces(l);
@@ -390,13 +389,12 @@ void takt_reference_follow(struct reference *l, uint64_t at, double feed, uint64
     l->at = at;
     l->feed = feed;
     l->owed_mm = 0.0;
-    l->abrupt = false;
     l->run.phase = l->run.phase == LANDING_ACTIVE ? LANDING_NONE : l->run.phase;
-    l->since_plus = l->since_minus = (uint32_t)l->window - 1;
+    l->since_plus = l->since_minus = (int32_t)l->window - 1;
     find_piece(p, path_mm(p->ceiling->origin, at), setpoint);
     const uint64_t start = takt_ceiling_start(p->ceiling, p->piece);
 
-    p->late = false;
+    p->late_a = 0.0;
     l->entered = reference_is_beyond(start, l->entered) ? start : l->entered;
     note_following(l);
     (void)takt_reference_low_feed(l, setpoint);
@@ -409,7 +407,7 @@ void takt_reference_set_ceiling(struct reference *l, const struct ceiling *ceili
     l->coming.ceiling = ceiling;
     l->coming.piece = 0;
     l->coming.low_count = 0;
-    l->coming.late = false;
+    l->coming.late_a = 0.0;
 }
 
 /* Goes on by one piece in search of the trapezoidal reference. False: that one is its own. */
@@ -422,12 +420,12 @@ static bool search(struct reference *l)
     }
     const uint64_t leave = path_ceiling_leave(p->ceiling, p->piece);
 
-    if (reference_is_beyond(l->standing ? l->at : l->span, leave)) {
+    if (reference_is_beyond(reference_stands(l) ? l->at : l->span, leave)) {
         p->piece++;
         p->low_count = 0;
         return true;
     }
-    if (l->standing) {
+    if (reference_stands(l)) {
         return false;
     }
     if (p->low_count == 0) {
@@ -459,10 +457,11 @@ static void take_place(struct reference *l)
     struct reference_place *from = &l->coming;
     struct reference_place *to = &l->here;
 
-    to->late_a = reference_has_piece(l) ? reference_acceleration(l) : from->late_a;
+    const double a = reference_has_piece(l) ? reference_acceleration(l) : from->late_a;
+
+    to->late_a = reference_is_late(from) ? a : 0.0;
     to->ceiling = from->ceiling;
     to->piece = from->piece;
-    to->late = from->late;
     to->late_start = from->late_start;
     to->low_first = 0;
     to->low_count = from->low_count;
@@ -493,7 +492,7 @@ bool takt_reference_find_place(struct reference *l)
     }
     take_place(l);
     l->follows = false;
-    if (follows && !l->here.late) {
+    if (follows && !reference_is_late(&l->here)) {
         note_following(l);
     }
     return false;

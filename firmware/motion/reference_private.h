@@ -12,7 +12,7 @@
 #include <stddef.h>
 
 /* Long ago: more cycles than any window. */
-#define REFERENCE_LONG_AGO UINT32_C(0x7fffffff)
+#define REFERENCE_LONG_AGO INT32_MAX
 
 /* Rounding of feed squared. */
 #define REFERENCE_FEED_SQUARED_SLACK 1e-6
@@ -102,13 +102,18 @@ static inline uint32_t reference_landing(const struct reference *l)
 /* Has it not slowed down for so long that it may speed up? */
 static inline bool reference_has_rested(const struct reference *l)
 {
-    return l->since_minus >= l->window + (l->abrupt ? 1.0 : 0.0);
+    return l->since_minus >= l->window;
+}
+
+static inline bool reference_is_late(const struct reference_place *p)
+{
+    return p->late_a > 0.0;
 }
 
 /* How hard it may brake where it is, mm/cycle2. */
 static inline double reference_acceleration(const struct reference *l)
 {
-    return l->here.late ? l->here.late_a : (double)reference_piece(l, l->here.piece)->acceleration;
+    return reference_is_late(&l->here) ? l->here.late_a : (double)reference_piece(l, l->here.piece)->acceleration;
 }
 
 /*

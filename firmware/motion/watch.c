@@ -15,7 +15,7 @@ static double explained_cycles(const struct motion *m)
 {
     const uint32_t index = m->path->first;
     const uint32_t cycles =
-        m->reference.standing ? path_at(m->path, index)->cycles : m->reference.cycles;
+        reference_stands(&m->reference) ? path_at(m->path, index)->cycles : m->reference.cycles;
     const double feed = takt_ceiling_block_feed(m->path, index, &m->request) * m->cycle_s;
     const double a = takt_ceiling_block_acceleration(m->path, index, cycles);
 

@@ -293,7 +293,6 @@ void takt_block_set_motion(struct block *b, const struct move *move, const struc
     b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s / b->scale;
     b->length_mm = curve->length_mm / b->scale;
     b->length = path_units(b->length_mm);
-    b->rotary = takt_curve_is_rotary(curve);
     b->end = JUNCTION_STOP;
     b->shape.line_a_mm_s2 = MATHS_INFINITY;
     b->shape.line_j_mm_s3 = MATHS_INFINITY;
@@ -315,7 +314,7 @@ void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, do
     b->move = *piece->move;
     b->number = piece->number;
     takt_curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
-    b->rotary = piece->rotary;
+    b->curve.rotary = piece->rotary;
     b->scale = 1.0;
     b->length_mm = b->curve.length_mm;
     b->length = path_units(b->length_mm);
@@ -334,6 +333,16 @@ void takt_block_join_smooth(struct block *b, const struct block *next)
     b->end = JUNCTION_PASSED;
     b->feed_junction_mm_s = MATHS_INFINITY;
     b->continues = b->number == next->number;
+}
+
+bool takt_block_turns(const struct block *b)
+{
+    bool turns = false;
+
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        turns = turns || b->curve.slope.at[i] != 0.0;
+    }
+    return turns;
 }
 
 void takt_block_set_wait(struct block *b, const struct move *move)

@@ -54,12 +54,11 @@ struct block {
     struct move move; /* the canonical move it came from */
     uint32_t number;  /* of the motion, from 1; a wait has the number of the motion before it */
     bool continues;   /* another piece of the same move follows */
-    bool rotary;      /* no linear axis moves: programmed feeds count rad */
     enum junction_kind end;
     enum governor cap; /* of feed_cap_mm_s */
     uint64_t start;    /* path position, path units (path_unit.h) */
     uint64_t length;   /* path units; 0: a wait, the axes stand */
-    struct curve curve;
+    struct curve curve; /* rotary: programmed feeds count rad */
     double scale;     /* mm of the curve for a mm of path (scale.h); what follows is by the path */
     double length_mm; /* of the path */
     struct block_shape shape;
@@ -119,5 +118,8 @@ static inline bool block_is_motion(const struct block *b)
 {
     return move_is_motion(&b->move);
 }
+
+/* Does it move rotary axes? */
+bool takt_block_turns(const struct block *b);
 
 #endif

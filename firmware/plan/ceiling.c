@@ -422,7 +422,7 @@ static void lay_blocks(struct builder *s)
             lay_landed_junction(s, i);
         }
     }
-    s->c->complete = i == s->path->closed;
+    s->c->behind = i;
 }
 
 void takt_ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)

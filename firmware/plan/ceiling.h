@@ -81,7 +81,7 @@ struct ceiling {
     double cycle_s;
     uint32_t first;  /* block of the path */
     uint64_t origin; /* path position: its start */
-    bool complete;   /* reaches to the end of all blocks that were known */
+    uint32_t behind; /* the block behind those that it is made of */
     uint32_t count;
     uint32_t
         open_from; /* from this piece on the span goes on beyond what is known; count: none does */

@@ -229,15 +229,20 @@ static void go_on_splitting(struct path *p)
     }
 }
 
+/* Is the newest block a piece of a smoothed curve that goes on? Its last one is closed. */
+static bool is_smoothing(const struct path *p)
+{
+    return p->closed < p->pushed && path_at(p, p->pushed - 1)->smooth;
+}
+
 /* The next piece of the smoothed chain. Nothing joins its first and its last one. */
 static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
 {
     struct block *b = edge(p, p->pushed);
 
-    TAKT_ASSERT(!p->smoothing || p->pushed != p->closed);
     takt_block_set_smooth(b, piece, p->unit_mm);
     b->start = p->position;
-    if (p->smoothing) {
+    if (is_smoothing(p)) {
         takt_block_join_smooth(edge(p, p->pushed - 1), b);
         takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
         takt_jerk_budget_close(p);
@@ -248,8 +253,7 @@ static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
         b->curve.end = piece->move->end;
     }
     append(p, b, piece->control);
-    p->smoothing = piece->end == SMOOTH_GOES_ON;
-    if (!p->smoothing) {
+    if (piece->end != SMOOTH_GOES_ON) {
         close_newest(p);
     }
 }
@@ -321,12 +325,12 @@ static bool turns_rotary(const struct path *p, const struct move *move)
  */
 static bool is_divided(const struct path *p, const struct move *move)
 {
-    const struct move *newest = &p->edge[(p->pushed - 1) % 2].move;
+    const struct block *newest = &p->edge[(p->pushed - 1) % 2];
 
     return p->closed < p->pushed &&
-           (newest->kind == MOVE_TAP_OUT ||
-            move_is_synchronized(newest) != move_is_synchronized(move) ||
-            (p->divides_rotary && turns_rotary(p, move) != p->newest_turns));
+           (newest->move.kind == MOVE_TAP_OUT ||
+            move_is_synchronized(&newest->move) != move_is_synchronized(move) ||
+            (p->divides_rotary && turns_rotary(p, move) != takt_block_turns(newest)));
 }
 
 static void push_move(struct path *p, const struct move *move)
@@ -343,7 +347,6 @@ static void push_move(struct path *p, const struct move *move)
         close_newest(p);
     }
     if (takt_move_curve(move, &p->end, &curve)) {
-        p->newest_turns = turns_rotary(p, move);
         if (takt_smooth_takes(move, &curve)) {
             TAKT_ASSERT(!p->lent);
             p->end = move->end;
@@ -386,7 +389,6 @@ void takt_path_restart(struct path *p, const struct point *at, uint64_t position
     p->position = position;
     p->split_mm = p->length_mm;
     p->has_next = false;
-    p->smoothing = false;
     takt_smooth_reset(&p->smooth);
     TAKT_ASSERT(!is_splitting(p) && !smooth_is_open(&p->smooth));
 }

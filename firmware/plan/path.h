@@ -56,11 +56,9 @@ struct path {
     bool finished;
     bool has_revolution_feed; /* a feed per revolution has been pushed */
     bool divides_rotary;      /* the axes stand where motion of rotary axes begins or ceases */
-    bool newest_turns;        /* the newest motion moves rotary axes */
     struct point end;         /* where everything pushed ends */
     bool lent;      /* where the chain is kept belongs to somebody else: nothing is smoothed */
     bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
-    bool smoothing; /* the newest block is a piece of a chain that goes on */
     double unit_mm; /* path for a second of nominal time of a smoothed curve */
     struct move split;     /* a motion of several pieces that have not all found room yet, */
     uint32_t split_number; /* its number, */

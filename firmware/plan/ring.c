@@ -119,7 +119,7 @@ void takt_ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const s
         .record = (place / PATH_BYTES_STEP) & 0xfffU,
         .motion = block_is_motion(b),
         .rapid = b->move.kind == MOVE_RAPID,
-        .rotary = b->rotary,
+        .rotary = b->curve.rotary,
         .may_feed = (may & OVERRIDE_FEED) != 0,
         .may_hold = (may & OVERRIDE_HOLD) != 0,
         .per_revolution = b->move.feed_rev_mm != 0.0,
@@ -186,7 +186,7 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->j_mm_s3 = (double)from->j_mm_s3;
     b->feed_junction_mm_s = (double)from->feed_junction_mm_s;
     b->end = (enum junction_kind)from->end;
-    b->rotary = from->rotary;
+    b->curve.rotary = from->rotary;
     b->continues = from->continues;
 }
 

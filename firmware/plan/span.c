@@ -50,9 +50,8 @@ struct span {
     double cycle_s;
     enum ramp_profile profile;
     double feed_start;
-    double feed_end;
-    bool known; /* the parts reach to its end, */
-    bool stops; /* where it rests */
+    double feed_end; /* 0: it rests there */
+    bool known;      /* the parts reach to its end */
     unsigned count;
     struct part part[PARTS_MAX];
 };
@@ -134,9 +133,8 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
             !add_block(s, path, index, &asked) || index == path->closed) {
             return;
         }
-        s->stops = takt_span_stops(path, index);
-        s->known = s->stops || takt_span_lands(path, index);
-        s->feed_end = s->stops ? 0.0 : (double)b->feed_junction_mm_s * s->cycle_s;
+        s->known = takt_span_stops(path, index) || takt_span_lands(path, index);
+        s->feed_end = (double)b->feed_junction_mm_s * s->cycle_s;
     }
 }
 
@@ -144,7 +142,7 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
 static double feed_at_start(const struct path *path, const struct ceiling_request *request,
                             uint32_t index)
 {
-    return index == request->first || takt_span_stops(path, index - 1)
+    return index == request->first
                ? 0.0
                : (double)path_at(path, index - 1)->feed_junction_mm_s * path->limits.cycle_s;
 }
@@ -207,16 +205,15 @@ static double laid_length(const struct trial *t, unsigned k)
 static double last_feed_squared(const struct trial *t)
 {
     const struct laid *last = &t->laid[t->count - 1];
-    const double ceiling = square(last->part->feed);
-    const double asked = t->span->known ? maths_min(ceiling, square(t->span->feed_end)) : ceiling;
 
     TAKT_ASSERT(t->count > 0);
-    return maths_min(asked, last->feed_squared + 2.0 * last->a * laid_length(t, t->count - 1));
+    return maths_min(maths_min(square(last->part->feed), square(t->span->feed_end)),
+                     last->feed_squared + 2.0 * last->a * laid_length(t, t->count - 1));
 }
 
 static void plan_energies(struct trial *t)
 {
-    double feed_squared = t->span->known ? square(t->span->feed_end) : MATHS_INFINITY;
+    double feed_squared = square(t->span->feed_end);
 
     for (unsigned k = t->count; k-- > 0;) {
         struct laid *p = &t->laid[k];
@@ -238,9 +235,8 @@ static void plan_energies(struct trial *t)
 }
 
 struct walk {
-    double cycles; /* so far */
-    bool rose;     /* and has kept its feed since for kept_mm */
-    double kept_mm;
+    double cycles;  /* so far */
+    double kept_mm; /* at its feed since it rose last; infinite: it has fallen since, or not risen */
 };
 
 /* Falls from a peak that was kept for too short: what the lower peak takes more. */
@@ -275,24 +271,24 @@ static void pass_part(struct walk *w, const struct trial *t, unsigned k)
     }
     w->cycles += (2.0 * peak - from - to) / p->a + kept_mm / peak;
     if (peak - from > CHANGE_MIN * peak) {
-        w->rose = true;
         w->kept_mm = 0.0;
     }
     w->kept_mm += kept_mm;
     if (peak - to > CHANGE_MIN * peak) {
-        if (w->rose && w->kept_mm < t->window * peak) {
+        if (w->kept_mm < t->window * peak) {
             lower_peak(w, t->window, peak, p->a);
         }
-        w->rose = false;
+        w->kept_mm = MATHS_INFINITY;
     }
 }
 
-/* Cycles that the span takes with a first box of this many. */
+/* Cycles that a span that is known takes with a first box of this many. */
 static double predict(const struct span *s, uint32_t box)
 {
     const double window = (double)takt_ramp_profile_window_cycles(s->profile, box);
     const double behind = 0.5 * (window - 1.0);
-    struct walk walk = {.cycles = s->known && s->stops ? window - 1.0 : 0.0};
+    struct walk walk = {.cycles = s->feed_end == 0.0 ? window - 1.0 : 0.0,
+                        .kept_mm = MATHS_INFINITY};
     struct trial t = {
         .span = s,
         .box = (double)box,
@@ -350,7 +346,7 @@ static uint32_t best_box(const struct span *s)
     static const double shorter[] = {0.85, 0.7, 0.55, 0.4, 0.25};
     const uint32_t longest = longest_box(s);
 
-    if (!s->known || (s->count == 1 && s->stops && s->feed_start == 0.0)) {
+    if (!s->known || (s->count == 1 && s->feed_end == 0.0 && s->feed_start == 0.0)) {
         return longest;
     }
     double least = predict(s, longest);

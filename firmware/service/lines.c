@@ -31,7 +31,7 @@ static bool is_ahead(struct service *s)
 {
     struct motion *motion = &s->controller.motion;
 
-    return motion->has_ceiling &&
+    return motion_has_ceiling(motion) &&
            takt_motion_ahead(motion) > s->controller.machine.look_ahead_blocks / 2;
 }
 

@@ -72,8 +72,8 @@ static const char *end_name(enum junction_kind end)
  */
 static double stretch_at(const struct block *block, double part)
 {
-    const int from = block->rotary ? AXIS_LINEAR_COUNT : 0;
-    const int to = block->rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
+    const int from = block->curve.rotary ? AXIS_LINEAR_COUNT : 0;
+    const int to = block->curve.rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
     struct point tangent;
     double square = 0;
 
@@ -108,7 +108,7 @@ static struct plan_row row_of(const struct plan_print *print, const struct plann
         return row;
     row.last = block->number;
     row.first = print->shown < row.last ? print->shown + 1 : row.last;
-    row.rotary = block->rotary;
+    row.rotary = block->curve.rotary;
     row.pieces = block->curve.kind == CURVE_SPLINE ? 1 : 0;
     row.length = block->curve.length_mm * mean_stretch(block);
     row.feed_start = planned->feed_start_mm_s;

@@ -84,7 +84,7 @@ static void push(struct planner *p, const struct move *move)
 
 static double program_feed(const struct planner *p, const struct block *block)
 {
-    const bool counts = block_is_motion(block) && !block->rotary && block->number < p->room;
+    const bool counts = block_is_motion(block) && !block->curve.rotary && block->number < p->room;
 
     return counts ? p->program_mm_s[block->number] : 0;
 }

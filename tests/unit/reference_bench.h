@@ -166,7 +166,6 @@ static inline void lay(struct ceiling *c, const struct stretch *s, unsigned coun
     }
     c->piece[c->count - 1].end = stops ? CEILING_STOPS : CEILING_GOES_ON;
     c->open_from = stops ? c->count : 0;
-    c->complete = true;
     plan(c);
 }
 
@@ -222,7 +221,7 @@ static inline void run_to_stop(double a_max, unsigned cycles_max)
     takt_reference_release(&reference);
     for (unsigned i = 0; i < cycles_max; i++) {
         step(false, a_max);
-        if (reference.standing) {
+        if (reference_stands(&reference)) {
             return;
         }
     }

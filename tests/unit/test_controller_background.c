@@ -120,7 +120,7 @@ static void test_a_path_that_is_not_gone_on_along_is_a_fault_with_its_line(void)
     start("G21 F3000\nG1 X1\nM2\n");
     for (unsigned i = 0;
          i < CYCLES_MAX && takt_controller_get_state(&controller) < CONTROLLER_COMPLETED; i++) {
-        controller.motion.reference.abrupt = true;
+        controller.motion.reference.since_minus = -1;
         takt_controller_background(&controller);
         cycle();
     }

@@ -139,12 +139,12 @@ static void test_a_stop_is_not_passed_before_what_is_sent_has_come_to_it(void)
     push(MOVE_FEED, 1.0, 50.0);
     push(MOVE_DWELL, 0.0, 0.25);
     push_end();
-    asked.settles = true;
     while (record.cmd.at[AXIS_X] < 1.0 || motion.cycles < without) {
         TEST_ASSERT_EQUAL(MOTION_CYCLE, cycle());
+        asked.stay = MOTION_SETTLES;
     }
     TEST_ASSERT_EQUAL(1, record.block);
-    asked.settles = false;
+    asked.stay = MOTION_STAYS_NOT;
     TEST_ASSERT_EQUAL_UINT64(without + 250, run_to_the_end());
 }
 
@@ -170,12 +170,12 @@ static void test_a_ceiling_that_is_there_before_the_first_cycle_is_taken_before_
     push(MOVE_FEED, 100.0, 50.0);
     push_end();
     takt_motion_prepare(&motion);
-    TEST_ASSERT_FALSE(motion.has_ceiling);
+    TEST_ASSERT_FALSE(motion_has_ceiling(&motion));
     TEST_ASSERT_NOT_NULL(takt_motion_wanted(&motion));
     takt_path_go_on(&path);
     takt_motion_build(&motion);
     takt_motion_prepare(&motion);
-    TEST_ASSERT_TRUE(motion.has_ceiling);
+    TEST_ASSERT_TRUE(motion_has_ceiling(&motion));
     TEST_ASSERT_FALSE(reference_take(&motion.reference));
 }
 
@@ -398,15 +398,15 @@ static void test_in_a_hold_a_tool_change_that_has_begun_is_finished_and_nothing_
 {
     push_tool_change();
     cycles(500);
-    TEST_ASSERT_TRUE(motion.changes_tool);
+    TEST_ASSERT_EQUAL(MOTION_CHANGES_TOOL, motion.end);
     asked.hold = MOTION_HOLD_ASKED;
     cycles(100);
-    TEST_ASSERT_TRUE(motion.changes_tool);
+    TEST_ASSERT_EQUAL(MOTION_CHANGES_TOOL, motion.end);
     asked.tool_waits = false;
     cycles(1);
     asked.tool_waits = true;
     cycles(100);
-    TEST_ASSERT_FALSE(motion.changes_tool);
+    TEST_ASSERT_NOT_EQUAL(MOTION_CHANGES_TOOL, motion.end);
     TEST_ASSERT_EQUAL_UINT32(2, path.first);
     asked.hold = MOTION_GOES;
     (void)run_to_the_end();
@@ -417,14 +417,14 @@ static void test_in_a_hold_no_tool_change_begins(void)
     push_tool_change();
     do {
         cycles(1);
-    } while (!motion.done);
+    } while (motion.end != MOTION_ARRIVED);
     asked.hold = MOTION_HOLD_ASKED;
     cycles(100);
-    TEST_ASSERT_FALSE(motion.changes_tool);
+    TEST_ASSERT_NOT_EQUAL(MOTION_CHANGES_TOOL, motion.end);
     TEST_ASSERT_EQUAL_UINT32(1, path.first);
     asked.hold = MOTION_GOES;
     cycles(1);
-    TEST_ASSERT_TRUE(motion.changes_tool);
+    TEST_ASSERT_EQUAL(MOTION_CHANGES_TOOL, motion.end);
 }
 
 /* Behind an event that a hold keeps, the next motion is not read in the place of the last one. */

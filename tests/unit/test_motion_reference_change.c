@@ -74,9 +74,9 @@ static void run_with_change(const struct stretch *way, double ratio, unsigned ch
     takt_reference_release(&reference);
     do {
         step(false, A);
-    } while (cycles < change && !reference.standing);
+    } while (cycles < change && !reference_stands(&reference));
     take(way, 2, 1.0, true);
-    while (!reference.standing) {
+    while (!reference_stands(&reference)) {
         step(false, (double)reference.here.ceiling->piece[reference.here.piece].acceleration);
         TEST_ASSERT_TRUE(reference.at <= path_units(9.0));
     }

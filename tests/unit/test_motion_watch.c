@@ -78,7 +78,7 @@ static uint64_t run_to_alarm(void (*spoil)(void))
 
 static void never_leave_a_stop(void)
 {
-    motion.reference.abrupt = true;
+    motion.reference.since_minus = -1;
 }
 
 static void never_speed_up(void)
@@ -139,7 +139,7 @@ static void test_a_stop_that_may_not_be_left_explains_any_time(void)
 {
     push(MOVE_FEED, 100.0, 100.0);
     takt_path_finish(&path);
-    asked.wait = true;
+    asked.stay = MOTION_WAITS;
     run(LONG_CYCLES);
 }
 
