@@ -4,23 +4,19 @@
  * background sees it. There is one processor, so nothing but the compiler may put reads and writes
  * in another order; here it must not.
  *
- *     writer   fills what it hands on, then sets a count or flag with handoff_set_...
- *     reader   reads that with handoff_get_..., then what it was handed
+ *     writer   fills what it hands on, then sets a count with handoff_set_count
+ *     reader   reads that with handoff_get_count, then what it was handed
  *
- * Each count and flag has one writer, or two that write it in turn (one sets a flag, the other
- * clears it). What is handed on belongs to the reader until it hands it back in the same way.
- * Counts are 32 bits: one access on every processor here.
+ * Each count has one writer, or two that write it in turn, as a state that says whose turn it is.
+ * What is handed on belongs to the reader until it hands it back in the same way. Counts are 32
+ * bits: one access on every processor here.
  */
 #ifndef TAKT_BASE_HANDOFF_H
 #define TAKT_BASE_HANDOFF_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
-/*
- * What stands before it is done before what stands behind it: for a state that is neither count nor
- * flag.
- */
+/* What stands before it is done before what stands behind it: for a state that is no count. */
 static inline void handoff_order(void)
 {
     __atomic_signal_fence(__ATOMIC_SEQ_CST);

@@ -6,7 +6,6 @@ void takt_handover_allow(struct motion *m, enum motion_handover which)
 {
     TAKT_ASSERT(which != MOTION_HANDS_OVER_LINEAR || m->path->pushed == 0);
     m->hands_over = which;
-    m->path->divides_rotary = which == MOTION_HANDS_OVER_LINEAR;
 }
 
 void takt_handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s,

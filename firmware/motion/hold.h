@@ -76,12 +76,10 @@ struct hold {
     float velocity[AXIS_COUNT]; /* mm (rad) per cycle, cycle2 and cycle3 */
     float acceleration[AXIS_COUNT];
     float jerk[AXIS_COUNT];
-    bool
-        smooth; /* pieces are the path's blocks; else parts of one block, counted from its start: */
-    bool whole; /* no further piece goes on with the curve */
+    /* 0: pieces are the path's blocks; else so many parts of one block, counted from its start: */
+    uint32_t parts;
     uint32_t within;
-    uint32_t parts; /* so many lie on it, */
-    float part_top; /* and that is the highest rate there */
+    float part_top; /* the highest rate there */
     uint32_t here;  /* the piece at whose start place.at is 0 */
     uint32_t end;   /* the pieces from it on to before this one are known */
     double length;  /* path units of a piece */
@@ -105,6 +103,12 @@ struct hold {
     bool stops;        /* it was to stop in the last cycle */
     double top;        /* rate that the curve was made for, or more */
 };
+
+/* Are pieces the path's blocks? */
+static inline bool hold_is_smooth(const struct hold *h)
+{
+    return h->parts == 0;
+}
 
 /* Piece k, if it is known. */
 static inline const float *hold_piece(const struct hold *h, uint32_t k)

@@ -49,7 +49,7 @@ static float top_of(const struct hold *h, const struct path *path, uint32_t bloc
 
 float takt_hold_top(const struct hold *h, const struct path *path, uint32_t piece)
 {
-    if (!h->smooth) {
+    if (!hold_is_smooth(h)) {
         return h->part_top;
     }
     return piece - h->here < h->end - h->here ? hold_piece(h, piece)[3 * (size_t)h->axes]
@@ -63,13 +63,13 @@ static double length_of(const struct path *path, uint32_t block)
 
 uint64_t takt_hold_start(const struct hold *h, const struct path *path)
 {
-    return h->smooth ? path_start(path, h->here)
+    return hold_is_smooth(h) ? path_start(path, h->here)
                      : path_start(path, h->within) + (uint64_t)((double)h->here * h->length);
 }
 
 bool takt_hold_is_behind(const struct hold *h, const struct path *path, uint32_t piece)
 {
-    if (!h->smooth) {
+    if (!hold_is_smooth(h)) {
         return piece >= h->parts;
     }
     return piece == path->closed || path_at(path, piece - 1)->end == JUNCTION_STOP;
@@ -278,17 +278,12 @@ bool takt_hold_stands(const struct path *path)
 }
 
 /* Is there another piece of the curve? Of a smoothed one it may not be known yet. */
-static bool has_next(struct hold *h, const struct path *path)
+static bool has_next(const struct hold *h, const struct path *path)
 {
-    if (!h->smooth) {
-        h->whole = h->end >= h->parts;
-        return !h->whole;
+    if (!hold_is_smooth(h)) {
+        return h->end < h->parts;
     }
-    if (h->end == path->closed) {
-        return false;
-    }
-    h->whole = h->end != h->here && !goes_on(h, path, h->end);
-    return !h->whole;
+    return h->end != path->closed && (h->end == h->here || goes_on(h, path, h->end));
 }
 
 /* More of a smoothed curve where none are known yet, or as many as it passes and some more. */
@@ -296,7 +291,7 @@ static unsigned at_once(const struct hold *h)
 {
     const float wanted = 2.0f + (float)h->place.rate;
 
-    return !h->smooth                                       ? PARTS_MAX
+    return !hold_is_smooth(h)                                       ? PARTS_MAX
            : h->end == h->here || wanted >= (float)READ_MAX ? READ_MAX
                                                             : (unsigned)wanted;
 }
@@ -304,16 +299,13 @@ static unsigned at_once(const struct hold *h)
 /* Behind parts of a line or an arc lies where the next one begins. */
 void takt_hold_read(struct hold *h, struct path *path)
 {
-    const unsigned most = h->smooth ? h->pieces : h->pieces - 1;
+    const unsigned most = hold_is_smooth(h) ? h->pieces : h->pieces - 1;
     const unsigned once = at_once(h);
 
     TAKT_ASSERT(h->end - h->here <= most);
     h->looked = 0;
-    for (unsigned i = 0; i < once && !h->whole && h->end - h->here < most; i++) {
-        if (!has_next(h, path)) {
-            return;
-        }
-        if (h->smooth) {
+    for (unsigned i = 0; i < once && h->end - h->here < most && has_next(h, path); i++) {
+        if (hold_is_smooth(h)) {
             read_smooth(h, path);
         } else {
             read_part(h, path);
@@ -361,26 +353,26 @@ static bool is_even(const struct hold *h, const struct path *path)
 
 static bool begin(struct hold *h, struct path *path, double way)
 {
-    h->smooth = path_at(path, path->first)->smooth;
+    const bool smooth = path_at(path, path->first)->smooth;
+
     h->within = path->first;
-    h->whole = false;
     h->off_second = 0.0f;
     h->off_third = 0.0f;
-    h->length = h->smooth ? length_of(path, path->first) : 0.0;
-    if (h->smooth ? !is_even(h, path) : !begin_parts(h, path, way)) {
+    h->length = smooth ? length_of(path, path->first) : 0.0;
+    if (smooth ? !is_even(h, path) : !begin_parts(h, path, way)) {
         return false;
     }
     TAKT_ASSERT(h->length > 0.0);
     h->per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
-    h->parts = h->smooth ? 0 : (uint32_t)(length_of(path, h->within) / h->length);
+    h->parts = smooth ? 0 : (uint32_t)(length_of(path, h->within) / h->length);
     h->part_top = top_of(h, path, h->within);
-    return true;
+    return smooth || h->parts > 0;
 }
 
 bool takt_hold_look(struct hold *h, struct path *path, double at, double way)
 {
     const bool smooth = path_at(path, path->first)->smooth;
-    const bool other = h->length == 0.0 || h->smooth != smooth ||
+    const bool other = h->length == 0.0 || hold_is_smooth(h) != smooth ||
                        (smooth ? (int32_t)(h->end - path->first) <= 0 : h->within != path->first);
 
     if (other && ((!smooth && at < CLEAR_CYCLES * way) || !begin(h, path, way))) {
@@ -394,7 +386,6 @@ bool takt_hold_look(struct hold *h, struct path *path, double at, double way)
     if (other || (int32_t)(h->end - h->here) <= 0) {
         h->end = h->here;
         h->clear_rate = 0.0f;
-        h->whole = false;
     }
     takt_hold_read(h, path);
     return !other && h->end != h->here;

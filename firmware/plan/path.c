@@ -47,6 +47,7 @@ void takt_path_init(struct path *p, const struct plan_limits *limits, const stru
     p->limits = *limits;
     p->end = *start;
     p->ring.scale = takt_scale_of_machine(limits);
+    takt_record_begin_chain(&p->ring.chain);
     TAKT_ASSERT(p->ring.scale.linear > 0.0 && p->ring.scale.rotary > 0.0);
     init_smooth(p);
 }
@@ -330,7 +331,7 @@ static bool is_divided(const struct path *p, const struct move *move)
     return p->closed < p->pushed &&
            (newest->move.kind == MOVE_TAP_OUT ||
             move_is_synchronized(&newest->move) != move_is_synchronized(move) ||
-            (p->divides_rotary && turns_rotary(p, move) != takt_block_turns(newest)));
+            (p->lent && turns_rotary(p, move) != takt_block_turns(newest)));
 }
 
 static void push_move(struct path *p, const struct move *move)

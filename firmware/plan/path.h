@@ -55,10 +55,13 @@ struct path {
     uint32_t motions; /* pushed so far: the number of the newest */
     bool finished;
     bool has_revolution_feed; /* a feed per revolution has been pushed */
-    bool divides_rotary;      /* the axes stand where motion of rotary axes begins or ceases */
     struct point end;         /* where everything pushed ends */
-    bool lent;      /* where the chain is kept belongs to somebody else: nothing is smoothed */
-    bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
+    /*
+     * where the chain is kept belongs to somebody else, who moves the linear axes: nothing is
+     * smoothed, and the axes stand where motion of rotary axes begins or ceases
+     */
+    bool lent;
+    bool has_next; /* a move that is not part of that chain waits until it has been taken: split */
     double unit_mm; /* path for a second of nominal time of a smoothed curve */
     struct move split;     /* a motion of several pieces that have not all found room yet, */
     uint32_t split_number; /* its number, */
@@ -82,8 +85,9 @@ struct path {
 /* start: where the machine stands. */
 void takt_path_init(struct path *p, const struct plan_limits *limits, const struct point *start);
 /*
- * Memory for something else, at a multiple of 8, in a path that smooths nothing from here on: no
- * move of PATH_BLEND comes before it is initialised again. size: of that, PATH_LENT_MAX at most.
+ * Memory for something else that moves the linear axes, at a multiple of 8, in a path that smooths
+ * nothing from here on: no move of PATH_BLEND comes before it is initialised again. Before anything
+ * is pushed. size: of that, PATH_LENT_MAX at most.
  */
 #define PATH_LENT_MAX (offsetof(struct smooth, change) - offsetof(struct smooth, route))
 void *takt_path_lend(struct path *p, size_t size);

@@ -43,6 +43,18 @@ static bool is_same_point(const struct point *a, const struct point *b)
     return takt_record_is_same(a, b, sizeof(*a));
 }
 
+/* A point that is not known. */
+static const struct point nowhere = {{MATHS_INFINITY, MATHS_INFINITY, MATHS_INFINITY,
+                                      MATHS_INFINITY, MATHS_INFINITY, MATHS_INFINITY}};
+
+_Static_assert(AXIS_COUNT == 6, "nowhere along each of them");
+
+void takt_record_begin_chain(struct record_chain *chain)
+{
+    chain->end = nowhere;
+    chain->control[0] = nowhere;
+}
+
 /* -- modes -- */
 
 void takt_record_modes_of(const struct block *b, bool smooth, struct record_modes *modes)
@@ -80,8 +92,8 @@ static void take_modes(const struct record_modes *modes, struct move *move)
 static unsigned flags_of(const struct block *b, bool spline, const struct record_chain *chain)
 {
     const struct move *m = &b->move;
-    const bool has_start = block_is_motion(b) && !spline &&
-                           !(chain->has_end && is_same_point(&b->curve.start, &chain->end));
+    const bool has_start =
+        block_is_motion(b) && !spline && !is_same_point(&b->curve.start, &chain->end);
 
     return (has_start ? FLAG_START : 0U) | (m->feed_rev_mm != 0.0 ? FLAG_REVOLUTION : 0U) |
            (record_is_round(m) && m->turns != 1 ? FLAG_TURNS : 0U) |
@@ -96,8 +108,7 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
 static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point control[4],
                            struct record_chain *chain, bool has_end)
 {
-    const bool chained =
-        chain->has_control && takt_record_is_same(chain->control, control, sizeof(chain->control));
+    const bool chained = takt_record_is_same(chain->control, control, sizeof(chain->control));
 
     if (chained && !has_end) {
         bytes[AT_END] = (uint8_t)takt_record_put_coordinates(to, &control[3]);
@@ -125,14 +136,13 @@ static void put_motion(uint8_t **to, const struct block *b, unsigned flags)
 }
 
 /* Where the block ends; of a piece of a smoothed curve only when that is the end of its move. */
-static bool end_of(const struct block *b, bool spline, const struct record_chain *chain,
-                   struct point *end)
+static const struct point *end_of(const struct block *b, bool spline,
+                                  const struct record_chain *chain)
 {
-    *end = block_is_motion(b) ? b->curve.end : chain->end;
     if (!block_is_motion(b)) {
-        return chain->has_end;
+        return &chain->end;
     }
-    return !spline || is_same_point(&b->curve.end, &b->move.end);
+    return !spline || is_same_point(&b->curve.end, &b->move.end) ? &b->curve.end : &nowhere;
 }
 
 uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
@@ -142,8 +152,8 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     const bool spline = control != NULL;
     unsigned flags = flags_of(b, spline, chain);
     uint8_t *to = bytes;
-    struct point end;
-    const bool has_end = end_of(b, spline, chain, &end);
+    const struct point end = *end_of(b, spline, chain);
+    const bool has_end = !is_same_point(&end, &nowhere);
 
     TAKT_ASSERT(modes < 256 && b->move.kind <= MOVE_END);
     bytes_put_half(&to, b->move.line);
@@ -164,8 +174,7 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     bytes[AT_KIND] = (uint8_t)b->move.kind;
     bytes[AT_FLAGS] = (uint8_t)flags;
     bytes[AT_MODES] = (uint8_t)modes;
-    chain->has_control = spline;
-    chain->has_end = has_end;
+    chain->control[0] = spline ? chain->control[0] : nowhere;
     chain->end = end;
     TAKT_ASSERT(to - bytes <= RECORD_MAX);
     return (uint32_t)(to - bytes);
@@ -245,14 +254,6 @@ static const uint8_t *read_head(const uint8_t *record, const struct record_modes
     return from;
 }
 
-/* For a piece within a motion only the geometry knows where the motion ends. */
-static void forget_end(struct move *move)
-{
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        move->end.at[i] = MATHS_INFINITY;
-    }
-}
-
 void takt_record_read_move(const uint8_t *record, const struct record_modes *modes,
                            struct move *move)
 {
@@ -309,7 +310,7 @@ static void read_spline(const uint8_t *record, const uint8_t *const before[RECOR
     if ((record[AT_FLAGS] & FLAG_MOVE_END) != 0) {
         b->curve.end = b->move.end;
     } else {
-        forget_end(&b->move);
+        b->move.end = nowhere; /* only the geometry knows where the motion ends */
     }
 }
 

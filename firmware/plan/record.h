@@ -59,13 +59,14 @@ bool takt_record_is_same(const void *a, const void *b, size_t size);
 /* Modes of a block; smooth: it is a piece of a smoothed curve. */
 void takt_record_modes_of(const struct block *b, bool smooth, struct record_modes *modes);
 
-/* What the record before leaves for the next one. */
+/* What the record before leaves for the next one; infinite: nothing. */
 struct record_chain {
-    bool has_end;     /* end is where the block before ends */
-    bool has_control; /* control are the last three control points of a piece of a smoothed curve */
-    struct point end;
-    struct point control[RECORD_BEFORE];
+    struct point end;                    /* where its block ends */
+    struct point control[RECORD_BEFORE]; /* the last ones of a piece of a smoothed curve */
 };
+
+/* Before the first record. */
+void takt_record_begin_chain(struct record_chain *chain);
 
 /*
  * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which

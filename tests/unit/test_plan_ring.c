@@ -369,11 +369,12 @@ static void test_a_piece_of_a_smoothed_curve_is_found_from_those_before(void)
 {
     static uint8_t bytes[8][RECORD_MAX];
     struct point control[11];
-    struct record_chain chain = {.has_end = false};
+    struct record_chain chain;
     struct record_modes modes;
     struct block b, back;
     uint32_t size[8];
 
+    takt_record_begin_chain(&chain);
     memset(&b, 0, sizeof(b));
     b.move.kind = MOVE_FEED;
     for (unsigned i = 0; i < 11; i++) {
@@ -400,12 +401,13 @@ static void test_pieces_of_an_involute_are_read_back(void)
     static uint8_t bytes[2][RECORD_MAX];
     const double centre[2] = {1.0, 2.0};
     const struct point from = {{4.0, 2.0, 0.5}}, to = {{-7.5, 8.25, 1.5}};
-    struct record_chain chain = {.has_end = false};
+    struct record_chain chain;
     struct record_modes modes;
     struct curve whole;
     struct block b, back;
     double at_mm = 0.0;
 
+    takt_record_begin_chain(&chain);
     memset(&b, 0, sizeof(b));
     b.move.kind = MOVE_INVOLUTE_CCW;
     b.move.end = to;
