@@ -92,8 +92,7 @@ static bool is_unchanged(const struct motion *m, const struct ceiling_request *r
 
     return m->made.feed_ratio == request->feed_ratio &&
            m->made.rapid_ratio == request->rapid_ratio &&
-           m->made.spindle_rev_s == request->spindle_rev_s &&
-           reaches_far(m, c, request->reference);
+           m->made.spindle_rev_s == request->spindle_rev_s && reaches_far(m, c, request->reference);
 }
 
 void takt_motion_build(struct motion *m)

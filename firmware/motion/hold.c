@@ -149,7 +149,8 @@ static bool reference_can_take(struct hold *h, const struct path *path, const st
     const double feed = (double)rate * h->length / PATH_UNITS_PER_MM;
 
     h->looked += HOLD_LOOKED_BY_REFERENCE;
-    return (hold_is_smooth(h) || takt_reference_could_rest(l, at, feed, path_end(path, h->within))) &&
+    return (hold_is_smooth(h) ||
+            takt_reference_could_rest(l, at, feed, path_end(path, h->within))) &&
            takt_reference_could_be(l, at, feed, stop);
 }
 

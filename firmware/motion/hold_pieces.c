@@ -63,8 +63,9 @@ static double length_of(const struct path *path, uint32_t block)
 
 uint64_t takt_hold_start(const struct hold *h, const struct path *path)
 {
-    return hold_is_smooth(h) ? path_start(path, h->here)
-                     : path_start(path, h->within) + (uint64_t)((double)h->here * h->length);
+    return hold_is_smooth(h)
+               ? path_start(path, h->here)
+               : path_start(path, h->within) + (uint64_t)((double)h->here * h->length);
 }
 
 bool takt_hold_is_behind(const struct hold *h, const struct path *path, uint32_t piece)
@@ -291,7 +292,7 @@ static unsigned at_once(const struct hold *h)
 {
     const float wanted = 2.0f + (float)h->place.rate;
 
-    return !hold_is_smooth(h)                                       ? PARTS_MAX
+    return !hold_is_smooth(h)                               ? PARTS_MAX
            : h->end == h->here || wanted >= (float)READ_MAX ? READ_MAX
                                                             : (unsigned)wanted;
 }

@@ -226,8 +226,7 @@ static void place(struct motion *m, const struct block *b, double local, double 
         return;
     }
     if (maths_abs(local - length) <= LANDED_UNITS && (local == length || lands(m))) {
-        const bool arrived =
-            ends_at_rest(m) && reference_stands(&m->reference) && m->lag == 0.0;
+        const bool arrived = ends_at_rest(m) && reference_stands(&m->reference) && m->lag == 0.0;
 
         m->end = arrived ? MOTION_ARRIVED : MOTION_UNDER_WAY;
         m->rested = 0;
@@ -282,8 +281,8 @@ static void move_reference(struct motion *m, bool hold)
  */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
-    return reference_stands(&m->reference) && m->reference.at == first_block(m)->start && m->rested > 0 &&
-           m->passed_first == m->path->first && wanted->stay == MOTION_STAYS_NOT;
+    return reference_stands(&m->reference) && m->reference.at == first_block(m)->start &&
+           m->rested > 0 && m->passed_first == m->path->first && wanted->stay == MOTION_STAYS_NOT;
 }
 
 /*

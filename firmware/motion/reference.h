@@ -38,7 +38,7 @@ struct reference_low {
 /* Where the trapezoidal reference is in a ceiling. */
 struct reference_place {
     const struct ceiling *ceiling; /* NULL: none */
-    uint32_t piece;      /* the ceiling's count: beyond its end. At a stop: the first behind it */
+    uint32_t piece; /* the ceiling's count: beyond its end. At a stop: the first behind it */
     /*
      * > 0: too fast for something that begins here and was not known before; this acceleration
      * still counts, as was promised,
@@ -81,10 +81,10 @@ struct reference {
     uint64_t
         entered; /* where what the trapezoidal reference has come to last starts for the setpoint */
     double feed; /* at the end of the last cycle */
-    double owed_mm;       /* what rounding has left so far */
-    bool follows;         /* it can do all that the ceiling asks for */
-    uint32_t cycles;      /* of the first averaging box, in this span */
-    double window;        /* cycles that the averages reach over */
+    double owed_mm;     /* what rounding has left so far */
+    bool follows;       /* it can do all that the ceiling asks for */
+    uint32_t cycles;    /* of the first averaging box, in this span */
+    double window;      /* cycles that the averages reach over */
     int32_t since_plus; /* cycles since it sped up */
     /* and since it slowed down; -1: to rest where it was, and waits for a cycle more */
     int32_t since_minus;

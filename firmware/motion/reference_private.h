@@ -113,7 +113,8 @@ static inline bool reference_is_late(const struct reference_place *p)
 /* How hard it may brake where it is, mm/cycle2. */
 static inline double reference_acceleration(const struct reference *l)
 {
-    return reference_is_late(&l->here) ? l->here.late_a : (double)reference_piece(l, l->here.piece)->acceleration;
+    return reference_is_late(&l->here) ? l->here.late_a
+                                       : (double)reference_piece(l, l->here.piece)->acceleration;
 }
 
 /*

@@ -55,9 +55,9 @@ struct block {
     uint32_t number;  /* of the motion, from 1; a wait has the number of the motion before it */
     bool continues;   /* another piece of the same move follows */
     enum junction_kind end;
-    enum governor cap; /* of feed_cap_mm_s */
-    uint64_t start;    /* path position, path units (path_unit.h) */
-    uint64_t length;   /* path units; 0: a wait, the axes stand */
+    enum governor cap;  /* of feed_cap_mm_s */
+    uint64_t start;     /* path position, path units (path_unit.h) */
+    uint64_t length;    /* path units; 0: a wait, the axes stand */
     struct curve curve; /* rotary: programmed feeds count rad */
     double scale;     /* mm of the curve for a mm of path (scale.h); what follows is by the path */
     double length_mm; /* of the path */

@@ -61,7 +61,7 @@ struct path {
      * smoothed, and the axes stand where motion of rotary axes begins or ceases
      */
     bool lent;
-    bool has_next; /* a move that is not part of that chain waits until it has been taken: split */
+    bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
     double unit_mm; /* path for a second of nominal time of a smoothed curve */
     struct move split;     /* a motion of several pieces that have not all found room yet, */
     uint32_t split_number; /* its number, */

@@ -235,8 +235,9 @@ static void plan_energies(struct trial *t)
 }
 
 struct walk {
-    double cycles;  /* so far */
-    double kept_mm; /* at its feed since it rose last; infinite: it has fallen since, or not risen */
+    double cycles; /* so far */
+    double
+        kept_mm; /* at its feed since it rose last; infinite: it has fallen since, or not risen */
 };
 
 /* Falls from a peak that was kept for too short: what the lower peak takes more. */

@@ -25,7 +25,8 @@ static void test_it_is_never_above_the_ceiling_of_its_piece(void)
     takt_reference_release(&reference);
     do {
         step(false, A);
-        TEST_ASSERT_TRUE(reference.feed <= ceiling_here() * (1.0 + 1e-9) || reference_stands(&reference));
+        TEST_ASSERT_TRUE(reference.feed <= ceiling_here() * (1.0 + 1e-9) ||
+                         reference_stands(&reference));
         TEST_ASSERT_TRUE(cycles < 2000);
     } while (!reference_stands(&reference));
 }
