@@ -24,6 +24,11 @@ static inline double maths_sqrt(double x)
     return __builtin_sqrt(x);
 }
 
+static inline double maths_square(double x)
+{
+    return x * x;
+}
+
 static inline double maths_abs(double x)
 {
     return __builtin_fabs(x);

@@ -41,23 +41,19 @@ void takt_motion_init(struct motion *m, struct path *path, const struct point *s
                                           .proportional = proportional};
 }
 
-static const struct block *first_block(const struct motion *m)
-{
-    return path_first(m->path);
-}
-
 /* -- stops, and what happens at them -- */
 
 /* A change of the tool (M6), not its number alone. */
 static bool waits_for_tool(const struct motion *m, enum move_kind kind, bool tool_waits)
 {
-    return kind == MOVE_TOOL && tool_waits && first_block(m)->move.tool_change;
+    return kind == MOVE_TOOL && tool_waits && path_first(m->path)->move.tool_change;
 }
 
 static bool is_wait_over(const struct motion *m, enum move_kind kind)
 {
     return kind != MOVE_DWELL ||
-           (double)m->waited >= takt_maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
+           (double)m->waited >=
+               takt_maths_ceil(path_first(m->path)->move.dwell_s / m->cycle_s - 1e-9);
 }
 
 static bool is_handed_over(const struct motion *m, const struct block *b)
@@ -125,7 +121,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
         m->current = m->path->first;
         if (path_at(m->path, m->current)->motion) {
             m->busy = m->busy || !ring_is_read(&m->path->ring, m->current);
-            *block = first_block(m);
+            *block = path_first(m->path);
             return is_handed_over(m, *block) ? MOTION_HANDED_OVER : MOTION_CYCLE;
         }
         const enum move_kind kind = takt_path_kind(m->path, m->current);
@@ -171,21 +167,6 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
     return (takt_ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
 }
 
-/* Is the end of the oldest block a stop? */
-static bool ends_at_rest(const struct motion *m)
-{
-    return takt_span_stops(m->path, m->path->first);
-}
-
-/*
- * Does the setpoint fall on the junction behind the oldest block in motion, but for rounding? At
- * rest it is there exactly.
- */
-static bool lands(const struct motion *m)
-{
-    return takt_span_lands(m->path, m->path->first);
-}
-
 /*
  * The setpoint's distance from the start of its block and that one's length, path units, after
  * passing the blocks that it has left from b on: those are not read.
@@ -198,8 +179,8 @@ static double find_block(struct motion *m, const struct block *b, double *length
 
     *length = (double)b->length;
     for (unsigned passed = 0; local > *length; passed++) {
-        if (passed == PASS_MAX || ends_at_rest(m) ||
-            (local <= *length + LANDED_UNITS && lands(m))) {
+        if (passed == PASS_MAX || takt_span_stops(m->path, m->path->first) ||
+            (local <= *length + LANDED_UNITS && takt_span_lands(m->path, m->path->first))) {
             break;
         }
         takt_path_pass(m->path);
@@ -225,8 +206,10 @@ static void place(struct motion *m, const struct block *b, double local, double 
     if (local == 0.0) {
         return;
     }
-    if (maths_abs(local - length) <= LANDED_UNITS && (local == length || lands(m))) {
-        const bool arrived = ends_at_rest(m) && reference_stands(&m->reference) && m->lag == 0.0;
+    if (maths_abs(local - length) <= LANDED_UNITS &&
+        (local == length || takt_span_lands(m->path, m->path->first))) {
+        const bool arrived = takt_span_stops(m->path, m->path->first) &&
+                             reference_stands(&m->reference) && m->lag == 0.0;
 
         m->end = arrived ? MOTION_ARRIVED : MOTION_UNDER_WAY;
         m->rested = 0;
@@ -281,7 +264,7 @@ static void move_reference(struct motion *m, bool hold)
  */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
-    return reference_stands(&m->reference) && m->reference.at == first_block(m)->start &&
+    return reference_stands(&m->reference) && m->reference.at == path_first(m->path)->start &&
            m->rested > 0 && m->passed_first == m->path->first && wanted->stay == MOTION_STAYS_NOT;
 }
 
@@ -301,7 +284,7 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     if (is_halted(m)) {
         takt_reference_leave_halt(&m->reference);
     }
-    if (m->reference.halt.on != wanted->single_block) {
+    if (reference_seeks(&m->reference) != wanted->single_block) {
         takt_reference_end_blocks(&m->reference, wanted->single_block);
     }
     m->rested++;
@@ -310,7 +293,7 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     const double local = find_block(m, b, &length);
 
     if (m->current != m->passed_first) {
-        b = first_block(m);
+        b = path_first(m->path);
     }
     const bool smooth = b->curve.kind == CURVE_SPLINE; /* its path is nominal time */
 

@@ -137,7 +137,7 @@ static void run_on(struct reference *l, uint64_t setpoint, bool hold)
     if (hold) {
         b.feed = 0.0;
     }
-    if (l->halt.found) {
+    if (reference_halts(l)) {
         takt_reference_brake_to_halt(l, &b);
     } else {
         reference_approach_landing(l, hold, &b);
@@ -244,7 +244,8 @@ static bool begin_span(struct reference *l, bool hold, struct reference_start *s
     if (reference_stands(l)) {
         return l->phase == REFERENCE_LEAVES && !hold && leave_stop(l, start);
     }
-    return (l->run.phase == LANDING_OVER || !(hold || l->halt.found)) && leave_junction(l, start);
+    return (l->run.phase == LANDING_OVER || !(hold || reference_halts(l))) &&
+           leave_junction(l, start);
 }
 
 bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
@@ -258,7 +259,7 @@ bool takt_reference_step(struct reference *l, uint64_t setpoint, bool hold,
     if (reference_stands(l)) {
         return false;
     }
-    const bool too_fast = l->halt.on && takt_reference_seek_halt(l);
+    const bool too_fast = reference_seeks(l) && takt_reference_seek_halt(l);
 
     follow_landing(l);
     if (l->run.phase == LANDING_ACTIVE) {

@@ -55,10 +55,17 @@ struct reference_place {
     uint64_t low_leave; /* path position */
 };
 
-/* Where the trapezoidal reference halts: at the end of a motion in its span, or nowhere. */
+/* Does the trapezoidal reference halt at the end of every motion that it can come to rest in? */
+enum reference_halting {
+    REFERENCE_PASSES,    /* no */
+    REFERENCE_SEEKS,     /* yes: at none that is known */
+    REFERENCE_HALTS,     /* yes: it comes to rest at the one that has been found, and stays */
+    REFERENCE_HALTS_ONCE /* not any more, but still at that one */
+};
+
+/* Where it halts: at the end of a motion in its span. */
 struct reference_halt {
-    bool on;        /* at the end of every motion that it can come to rest in */
-    bool found;     /* it comes to rest there, and stays */
+    enum reference_halting state;
     uint32_t block; /* the path's: those before it, in its span, end no motion ahead */
     uint64_t span;  /* where that span starts; another one than that it is in: none is known, */
     uint64_t end;   /* and that block ends */
@@ -120,6 +127,18 @@ void takt_reference_stand(struct reference *l, uint64_t at);
 static inline bool reference_stands(const struct reference *l)
 {
     return l->phase != REFERENCE_RUNS;
+}
+
+/* Has it found an end of a motion to halt at? */
+static inline bool reference_halts(const struct reference *l)
+{
+    return l->halt.state >= REFERENCE_HALTS;
+}
+
+/* Does it look for them? */
+static inline bool reference_seeks(const struct reference *l)
+{
+    return l->halt.state == REFERENCE_SEEKS || l->halt.state == REFERENCE_HALTS;
 }
 
 /* The stop at which everything stands has been served. */

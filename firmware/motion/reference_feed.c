@@ -56,7 +56,7 @@ struct place {
 static double feed_to_meet(const struct place *p, double w)
 {
     const double a = p->a;
-    const double root = 0.25 * a * a - a * w + reference_square(p->feed) + 2.0 * a * p->gap_mm;
+    const double root = 0.25 * a * a - a * w + maths_square(p->feed) + 2.0 * a * p->gap_mm;
     const double v = root > 0.0 ? maths_sqrt(root) - 0.5 * a : -1.0;
 
     return p->gap_mm < 0.5 * (w + v) || v < 0.0 ? p->feed : v;
@@ -68,8 +68,7 @@ static double feed_to_meet(const struct place *p, double w)
  */
 static bool is_far(const struct place *p, double w)
 {
-    return reference_square(w + p->a) * (1.0 + REFERENCE_FEED_SQUARED_SLACK) <=
-           2.0 * p->a * p->gap_mm;
+    return maths_square(w + p->a) * (1.0 + REFERENCE_FEED_SQUARED_SLACK) <= 2.0 * p->a * p->gap_mm;
 }
 
 /*
@@ -344,8 +343,7 @@ static bool is_way_free(const struct reference *l, bool highest)
     }
     const double feed = reference_feed(l, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
 
-    return reference_square(feed) >=
-           reference_square(l->feed) * (1.0 - REFERENCE_FEED_SQUARED_SLACK);
+    return maths_square(feed) >= maths_square(l->feed) * (1.0 - REFERENCE_FEED_SQUARED_SLACK);
 }
 
 /* The feed at the end of this cycle if nothing else but braking happens. */
@@ -429,7 +427,7 @@ static double feed_to_halt(const struct reference *l, double top)
     const double m = a * (l->window + 0.5);
     const double root = m * m + 2.0 * a * (path_mm(l->at, l->halt.end) - 0.5 * l->feed);
 
-    TAKT_ASSERT(l->halt.found);
+    TAKT_ASSERT(reference_halts(l));
     return root > 0.0 ? maths_min(top, maths_sqrt(root) - m) : 0.0;
 }
 
@@ -442,7 +440,7 @@ static double feed_in_piece(const struct reference *l, const struct ceiling_piec
     const double a = (double)p->acceleration;
     const double m = a * (l->window + 0.5);
     const double root =
-        m * m + reference_square(reference_feed(l, p->end_feed_mm_s)) + 2.0 * a * gap_mm;
+        m * m + maths_square(reference_feed(l, p->end_feed_mm_s)) + 2.0 * a * gap_mm;
 
     return root > 0.0 ? maths_sqrt(root) - m : 0.0;
 }
@@ -482,7 +480,7 @@ double takt_reference_speed_up(const struct reference *l, double at_mm, double l
     }
     const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;
     const double kept = feed_to_keep(l, at_mm, top, low);
-    const double v = l->halt.found ? feed_to_halt(l, kept) : kept;
+    const double v = reference_halts(l) ? feed_to_halt(l, kept) : kept;
 
     return v > l->feed + reference_change_min(a, v) ? maths_max(l->feed, feed_to_land(l, v))
                                                     : l->feed;

@@ -44,14 +44,14 @@
 
 bool takt_reference_has_halted(const struct reference *l)
 {
-    return l->halt.found && l->feed == 0.0 && l->at == l->halt.end;
+    return reference_halts(l) && l->feed == 0.0 && l->at == l->halt.end;
 }
 
 void takt_reference_leave_halt(struct reference *l)
 {
     TAKT_ASSERT(takt_reference_has_halted(l));
     l->halt.left = l->halt.end;
-    l->halt.found = false;
+    l->halt.state = reference_seeks(l) ? REFERENCE_SEEKS : REFERENCE_PASSES;
 }
 
 /* Cycles until it may brake. */
@@ -63,13 +63,12 @@ static double waiting(const struct reference *l)
 /* By how much feed squared is below what it may be; < 0: it is above. */
 static double spare_feed_squared(const struct reference *l, double a)
 {
-    return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * waiting(l)) -
-           reference_square(l->feed);
+    return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * waiting(l)) - maths_square(l->feed);
 }
 
 bool takt_reference_can_halt(const struct reference *l, double a)
 {
-    return spare_feed_squared(l, a) >= REFERENCE_FEED_SQUARED_SLACK * reference_square(l->feed);
+    return spare_feed_squared(l, a) >= REFERENCE_FEED_SQUARED_SLACK * maths_square(l->feed);
 }
 
 /*
@@ -78,8 +77,8 @@ bool takt_reference_can_halt(const struct reference *l, double a)
  */
 static bool keeps_halt(const struct reference *l, double a)
 {
-    return spare_feed_squared(l, a) >= -REFERENCE_FEED_SQUARED_SLACK * reference_square(l->feed) -
-                                           2.0 * REFERENCE_REST_PART * reference_square(a);
+    return spare_feed_squared(l, a) >= -REFERENCE_FEED_SQUARED_SLACK * maths_square(l->feed) -
+                                           2.0 * REFERENCE_REST_PART * maths_square(a);
 }
 
 /* What the end itself and the place that it is in allow. */
@@ -108,7 +107,7 @@ static double junction_acceleration(const struct reference *l)
  */
 static bool is_bound(const struct reference *l)
 {
-    return l->halt.found && l->feed > 0.0 && !keeps_halt(l, junction_acceleration(l)) &&
+    return reference_halts(l) && l->feed > 0.0 && !keeps_halt(l, junction_acceleration(l)) &&
            keeps_halt(l, free_acceleration(l));
 }
 
@@ -116,8 +115,8 @@ double takt_reference_halt_acceleration(const struct reference *l)
 {
     const double gap = path_mm(l->at, l->halt.end) - l->feed * waiting(l);
 
-    TAKT_ASSERT(l->halt.span == l->span || l->halt.found); /* one that binds is kept when off */
-    return is_bound(l) ? maths_min(free_acceleration(l), 0.5 * reference_square(l->feed) / gap)
+    TAKT_ASSERT(l->halt.span == l->span || reference_halts(l)); /* one that binds is kept */
+    return is_bound(l) ? maths_min(free_acceleration(l), 0.5 * maths_square(l->feed) / gap)
                        : junction_acceleration(l);
 }
 
@@ -125,14 +124,18 @@ static bool can_rest(const struct reference *l)
 {
     const double a = takt_reference_halt_acceleration(l);
 
-    return l->feed == 0.0 || takt_reference_can_halt(l, a) || (l->halt.found && keeps_halt(l, a));
+    return l->feed == 0.0 || takt_reference_can_halt(l, a) ||
+           (reference_halts(l) && keeps_halt(l, a));
 }
 
 void takt_reference_end_blocks(struct reference *l, bool on)
 {
-    l->halt.on = on;
     l->halt.span = l->span - 1; /* the next end is looked for anew */
-    l->halt.found = l->halt.found && (on || is_bound(l));
+    if (on) {
+        l->halt.state = reference_halts(l) ? REFERENCE_HALTS : REFERENCE_SEEKS;
+    } else {
+        l->halt.state = is_bound(l) ? REFERENCE_HALTS_ONCE : REFERENCE_PASSES;
+    }
 }
 
 /* The block begins a motion, or goes on with that of the one before. */
@@ -193,14 +196,13 @@ static bool find_end(struct reference *l, const struct ceiling *c)
 bool takt_reference_seek_halt(struct reference *l)
 {
     struct reference_halt *h = &l->halt;
-    const bool found = h->found;
     const uint64_t end = h->end;
 
-    h->found = false;
     if (l->run.phase == LANDING_ACTIVE || !find_end(l, l->here.ceiling)) {
+        h->state = REFERENCE_SEEKS;
         return false;
     }
-    h->found = found && h->end == end;
-    h->found = can_rest(l);
-    return !h->found;
+    h->state = h->end == end ? h->state : REFERENCE_SEEKS;
+    h->state = can_rest(l) ? REFERENCE_HALTS : REFERENCE_SEEKS;
+    return h->state == REFERENCE_SEEKS;
 }

@@ -108,7 +108,7 @@ static double brake_position(const struct reference *l, const struct ceiling *c)
 /* A feed of its pieces, squared. */
 static double feed_squared_of(const struct ceiling *c, float feed_mm_s)
 {
-    return reference_square(ceiling_feed(c, feed_mm_s));
+    return maths_square(ceiling_feed(c, feed_mm_s));
 }
 
 /*
@@ -145,7 +145,7 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double feed_
 static bool can_follow(const struct reference *l, const struct ceiling *c, uint32_t k, bool highest)
 {
     return can_meet(c, k, brake_position(l, c),
-                    reference_square(l->feed) * (1.0 - REFERENCE_FEED_SQUARED_SLACK), highest);
+                    maths_square(l->feed) * (1.0 - REFERENCE_FEED_SQUARED_SLACK), highest);
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
@@ -166,7 +166,7 @@ static bool is_no_lower(const struct reference *l, const struct ceiling *c, uint
 static bool halts_before(const struct reference *l, const struct ceiling *c, uint32_t k,
                          uint64_t start)
 {
-    return l->halt.found && reference_is_beyond(start, l->halt.end) &&
+    return reference_halts(l) && reference_is_beyond(start, l->halt.end) &&
            !takt_reference_can_halt(l, (double)c->piece[k].acceleration);
 }
 

@@ -74,11 +74,6 @@ static inline uint64_t reference_leave_of(const struct reference *l, uint32_t k)
     return path_ceiling_leave(l->here.ceiling, k);
 }
 
-static inline double reference_square(double x)
-{
-    return x * x;
-}
-
 /* Path position at or beyond another. */
 static inline bool reference_is_beyond(uint64_t position, uint64_t other)
 {
@@ -154,7 +149,7 @@ static inline void reference_approach_landing(struct reference *l, bool hold,
     }
 }
 /*
- * reference_halt.c: with halt.on: looks for the end to halt at (halt.found). True: it is too fast
+ * reference_halt.c: where it seeks: looks for the end to halt at. True: it is too fast
  * for the next one.
  */
 bool takt_reference_seek_halt(struct reference *l);

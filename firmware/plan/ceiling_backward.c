@@ -10,11 +10,6 @@
 #include "plan/ceiling.h"
 #include "smooth/single.h"
 
-static double square(double x)
-{
-    return x * x;
-}
-
 /* Below this a square is 0, mm2/cycle2: what is above has all digits in single precision. */
 #define FEED_SQUARED_MIN 1e-30
 
@@ -29,7 +24,7 @@ static float feed_below(const struct ceiling *c, double feed_squared)
     if (feed_squared < FEED_SQUARED_MIN) {
         return 0.0F;
     }
-    while (square(ceiling_feed(c, feed_mm_s)) > feed_squared) {
+    while (maths_square(ceiling_feed(c, feed_mm_s)) > feed_squared) {
         feed_mm_s = takt_maths_float_below((double)feed_mm_s * (1.0 - 0x1p-25));
     }
     return feed_mm_s;
@@ -50,12 +45,12 @@ static float end_feed_of(const struct ceiling_piece *p, bool highest)
 static float begin_feed(const struct ceiling *c, uint32_t k, float feed_mm_s, float end_mm_s)
 {
     const double length_mm = c->end_mm[k] - (k == 0 ? 0.0 : c->end_mm[k - 1]);
-    const double feed_squared =
-        square(ceiling_feed(c, end_mm_s)) + 2.0 * (double)c->piece[k].acceleration * length_mm;
+    const double feed_squared = maths_square(ceiling_feed(c, end_mm_s)) +
+                                2.0 * (double)c->piece[k].acceleration * length_mm;
 
     TAKT_ASSERT(length_mm >= 0.0);
-    return feed_squared < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, feed_squared)
-                                                             : feed_mm_s;
+    return feed_squared < maths_square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, feed_squared)
+                                                                   : feed_mm_s;
 }
 
 /*
@@ -88,8 +83,8 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum ramp_profile 
         const struct ceiling_piece *p = &c->piece[i];
         const double a = (double)p->acceleration;
         const double m = a * cycles;
-        const double feed_squared =
-            square(ceiling_feed(c, end_feed_of(p, highest))) + 2.0 * a * (c->end_mm[i] - start_mm);
+        const double feed_squared = maths_square(ceiling_feed(c, end_feed_of(p, highest))) +
+                                    2.0 * a * (c->end_mm[i] - start_mm);
 
         feed = maths_min(feed, ceiling_feed(c, feed_of(c, i, highest)));
         feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, feed_squared)) - m);

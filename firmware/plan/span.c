@@ -188,11 +188,6 @@ static void lay_parts(struct trial *t)
     }
 }
 
-static double square(double x)
-{
-    return x * x;
-}
-
 /* The way of the trapezoidal reference through what is laid. */
 static double laid_length(const struct trial *t, unsigned k)
 {
@@ -207,30 +202,30 @@ static double last_feed_squared(const struct trial *t)
     const struct laid *last = &t->laid[t->count - 1];
 
     TAKT_ASSERT(t->count > 0);
-    return maths_min(maths_min(square(last->part->feed), square(t->span->feed_end)),
+    return maths_min(maths_min(maths_square(last->part->feed), maths_square(t->span->feed_end)),
                      last->feed_squared + 2.0 * last->a * laid_length(t, t->count - 1));
 }
 
 static void plan_energies(struct trial *t)
 {
-    double feed_squared = square(t->span->feed_end);
+    double feed_squared = maths_square(t->span->feed_end);
 
     for (unsigned k = t->count; k-- > 0;) {
         struct laid *p = &t->laid[k];
-        const double ceiling = square(p->part->feed);
+        const double ceiling = maths_square(p->part->feed);
 
         feed_squared =
             maths_min(ceiling, maths_min(feed_squared, ceiling) + 2.0 * p->a * laid_length(t, k));
         p->feed_squared = feed_squared;
     }
-    feed_squared = square(t->span->feed_start);
+    feed_squared = maths_square(t->span->feed_start);
     for (unsigned k = 0; k < t->count; k++) {
         struct laid *p = &t->laid[k];
 
         p->feed_squared = maths_min(p->feed_squared, feed_squared);
         TAKT_ASSERT(p->feed_squared >= 0.0);
-        feed_squared =
-            maths_min(square(p->part->feed), p->feed_squared + 2.0 * p->a * laid_length(t, k));
+        feed_squared = maths_min(maths_square(p->part->feed),
+                                 p->feed_squared + 2.0 * p->a * laid_length(t, k));
     }
 }
 
