@@ -436,7 +436,7 @@ static void test_a_hold_at_a_stop_tells_the_motion_that_has_ended(void)
     push_end();
     do {
         cycles(1);
-    } while (!motion.done);
+    } while (motion.end != MOTION_ARRIVED);
     asked.hold = MOTION_HOLD_ASKED;
     for (unsigned i = 0; i < 100; i++) {
         cycles(1);
