@@ -56,7 +56,7 @@ static bool may_hold(const struct motion *m)
 {
     const struct reference *l = &m->reference;
 
-    return !reference_stands(l) && !reference_is_late(&l->here) && reference_has_piece(l) &&
+    return !reference_stands(l) && !l->here.late && reference_has_piece(l) &&
            m->feed_before[0] > 0.0 && path_at(m->path, m->path->first)->motion;
 }
 

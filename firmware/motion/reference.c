@@ -151,8 +151,7 @@ static void run_on(struct reference *l, uint64_t setpoint, bool hold)
     if (b.rest || stops || b.feed < l->feed - reference_change_min(b.a, l->feed)) {
         slow_down(l, &b);
     } else {
-        go(l, hold || reference_is_late(&l->here) ? l->feed
-                                                  : takt_reference_speed_up(l, b.at_mm, low));
+        go(l, hold || l->here.late ? l->feed : takt_reference_speed_up(l, b.at_mm, low));
     }
 }
 

@@ -38,13 +38,10 @@ struct reference_low {
 /* Where the trapezoidal reference is in a ceiling. */
 struct reference_place {
     const struct ceiling *ceiling; /* NULL: none */
-    uint32_t piece; /* the ceiling's count: beyond its end. At a stop: the first behind it */
-    /*
-     * > 0: too fast for something that begins here and was not known before; this acceleration
-     * still counts, as was promised,
-     */
-    double late_a;
-    uint64_t late_start; /* and it starts here for the setpoint */
+    uint32_t piece;      /* the ceiling's count: beyond its end. At a stop: the first behind it */
+    bool late;           /* too fast for something that begins here and was not known before: */
+    uint64_t late_start; /* it starts here for the setpoint, */
+    double late_a;       /* and this acceleration still counts, as was promised */
     /*
      * from the setpoint's piece to the trapezoidal reference's, feeds rising: the first is the
      * lowest

@@ -204,7 +204,7 @@ void takt_reference_brake_ahead(const struct reference *l, double low, struct re
     b->pieces = 0;
     b->a = reference_acceleration(l);
     b->rest = false;
-    if (reference_is_late(&l->here)) {
+    if (l->here.late) {
         brake_late(l, b);
     }
     for (uint32_t k = l->here.piece; !b->rest; k++) {
@@ -212,7 +212,7 @@ void takt_reference_brake_ahead(const struct reference *l, double low, struct re
         const double gap_mm = reference_end_mm(l, k) - s;
 
         b->pieces = k - l->here.piece + 1;
-        if (!reference_is_late(&l->here) || p->end == CEILING_STOPS) {
+        if (!l->here.late || p->end == CEILING_STOPS) {
             brake_for_piece(l, k, gap_mm, b);
         }
         if (reference_is_last_of_span(p) || gap_mm >= l->feed || k + 1 == l->here.ceiling->count ||

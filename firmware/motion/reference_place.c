@@ -204,8 +204,9 @@ static void come_to(struct reference *l, struct reference_place *p, uint32_t k)
         l->entered = reference_is_beyond(start, l->entered) ? start : l->entered;
         return;
     }
-    p->late_start = reference_is_late(p) ? nearer(l, p->late_start, start) : start;
-    p->late_a = reference_is_late(p) ? p->late_a : (double)c->piece[k - 1].acceleration;
+    p->late_start = p->late ? nearer(l, p->late_start, start) : start;
+    p->late_a = p->late ? p->late_a : (double)c->piece[k - 1].acceleration;
+    p->late = true;
     l->follows = false;
     l->known = nearer(l, l->known, start);
 }
@@ -236,7 +237,7 @@ static bool is_harmless(const struct reference *l)
 {
     const struct reference_place *p = &l->here;
 
-    TAKT_ASSERT(reference_is_late(p));
+    TAKT_ASSERT(p->late);
     return l->feed == 0.0 ||
            (l->feed * reference_entry_cycles(l) <= path_mm(l->at, p->late_start) &&
             can_follow(l, p->ceiling, p->piece, false) &&
@@ -264,11 +265,11 @@ static void note_known(struct reference *l)
     if (l->follows || !reference_has_piece(l)) {
         return;
     }
-    if (reference_is_late(p) && is_harmless(l)) {
-        p->late_a = 0.0;
+    if (p->late && is_harmless(l)) {
+        p->late = false;
         l->entered = reference_is_beyond(p->late_start, l->entered) ? p->late_start : l->entered;
     }
-    if (!reference_is_late(p) && can_follow(l, p->ceiling, p->piece, false)) {
+    if (!p->late && can_follow(l, p->ceiling, p->piece, false)) {
         note_following(l);
     }
 }
@@ -290,7 +291,7 @@ void takt_reference_enter_piece(struct reference *l, uint32_t k)
 {
     l->here.piece = k;
     l->here.low_count = 0;
-    l->here.late_a = 0.0;
+    l->here.late = false;
     low_push(&l->here, k);
     l->entered = l->span;
     go_through_pieces(l);
@@ -394,7 +395,7 @@ void takt_reference_follow(struct reference *l, uint64_t at, double feed, uint64
     find_piece(p, path_mm(p->ceiling->origin, at), setpoint);
     const uint64_t start = takt_ceiling_start(p->ceiling, p->piece);
 
-    p->late_a = 0.0;
+    p->late = false;
     l->entered = reference_is_beyond(start, l->entered) ? start : l->entered;
     note_following(l);
     (void)takt_reference_low_feed(l, setpoint);
@@ -407,7 +408,7 @@ void takt_reference_set_ceiling(struct reference *l, const struct ceiling *ceili
     l->coming.ceiling = ceiling;
     l->coming.piece = 0;
     l->coming.low_count = 0;
-    l->coming.late_a = 0.0;
+    l->coming.late = false;
 }
 
 /* Goes on by one piece in search of the trapezoidal reference. False: that one is its own. */
@@ -457,11 +458,10 @@ static void take_place(struct reference *l)
     struct reference_place *from = &l->coming;
     struct reference_place *to = &l->here;
 
-    const double a = reference_has_piece(l) ? reference_acceleration(l) : from->late_a;
-
-    to->late_a = reference_is_late(from) ? a : 0.0;
+    to->late_a = reference_has_piece(l) ? reference_acceleration(l) : from->late_a;
     to->ceiling = from->ceiling;
     to->piece = from->piece;
+    to->late = from->late;
     to->late_start = from->late_start;
     to->low_first = 0;
     to->low_count = from->low_count;
@@ -492,7 +492,7 @@ bool takt_reference_find_place(struct reference *l)
     }
     take_place(l);
     l->follows = false;
-    if (follows && !reference_is_late(&l->here)) {
+    if (follows && !l->here.late) {
         note_following(l);
     }
     return false;

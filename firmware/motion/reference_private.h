@@ -100,16 +100,10 @@ static inline bool reference_has_rested(const struct reference *l)
     return l->since_minus >= l->window;
 }
 
-static inline bool reference_is_late(const struct reference_place *p)
-{
-    return p->late_a > 0.0;
-}
-
 /* How hard it may brake where it is, mm/cycle2. */
 static inline double reference_acceleration(const struct reference *l)
 {
-    return reference_is_late(&l->here) ? l->here.late_a
-                                       : (double)reference_piece(l, l->here.piece)->acceleration;
+    return l->here.late ? l->here.late_a : (double)reference_piece(l, l->here.piece)->acceleration;
 }
 
 /*
