@@ -217,7 +217,7 @@ static void leave_landed(struct product *p, struct motion *m)
  */
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
-    return m->passed_first == m->path->first && wanted->stay == MOTION_STAYS_NOT &&
+    return m->passed_first == m->path->first && !wanted->wait &&
            wanted_ratio(first_block(m), wanted) > 0.0;
 }
 

@@ -149,9 +149,8 @@ static struct motion_operator operator_of(const struct controller *c, const stru
         .hold = hold_of(c, in),
         .single_block = in->single_block,
         .obeys = obeys_of(in),
-        .stay = !controller_shape_is_settled(c) ? MOTION_SETTLES
-                : c->spindle.waits              ? MOTION_WAITS
-                                                : MOTION_STAYS_NOT,
+        .wait = c->spindle.waits,
+        .settles = !controller_shape_is_settled(c),
         .tool_waits = tool_changer_waits(&c->changer),
         .measures = true,
         .spindle_rev_s = c->spindle.rev_s,

@@ -103,7 +103,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
 
     *block = NULL;
     m->end = m->end == MOTION_ARRIVED ? MOTION_ARRIVED : MOTION_UNDER_WAY;
-    if (m->end == MOTION_ARRIVED && wanted->stay == MOTION_SETTLES) {
+    if (m->end == MOTION_ARRIVED && wanted->settles) {
         return rest(m);
     }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
@@ -265,7 +265,7 @@ static void move_reference(struct motion *m, bool hold)
 static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
 {
     return reference_stands(&m->reference) && m->reference.at == path_first(m->path)->start &&
-           m->rested > 0 && m->passed_first == m->path->first && wanted->stay == MOTION_STAYS_NOT;
+           m->rested > 0 && m->passed_first == m->path->first && !wanted->wait;
 }
 
 /*
@@ -324,7 +324,7 @@ static void watch(struct motion *m, const struct motion_operator *wanted, const 
         return;
     }
     m->busy = true;
-    if (!takt_watch_look(m, !is_held(m, wanted) && wanted->stay != MOTION_WAITS)) {
+    if (!takt_watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
         m->watch.line = b->move.line;
         m->ending = true;
     }

@@ -63,13 +63,6 @@ enum motion_hold {
     MOTION_STOPS       /* in a thread too, which is not gone on with */
 };
 
-/* What keeps the axes at a stop? */
-enum motion_stay {
-    MOTION_STAYS_NOT,
-    MOTION_WAITS,  /* it is not left: the spindle has not reached its speed */
-    MOTION_SETTLES /* nor is it passed: what is sent has not come to it yet */
-};
-
 /* In which program stops does the cycle that passes them pass nothing behind? */
 enum motion_obeys { MOTION_OBEYS_NONE, MOTION_OBEYS_M0, MOTION_OBEYS_M0_AND_M1 };
 
@@ -78,9 +71,10 @@ struct motion_operator {
     double feed_ratio;  /* of programmed feeds, 0 ... BLOCK_OVERRIDE_MAX; 0 holds */
     double rapid_ratio; /* 0 ... 1; 0 holds rapids */
     enum motion_hold hold;
-    enum motion_stay stay;
     enum motion_obeys obeys;
     bool single_block; /* every motion that it can still brake in ends at rest */
+    bool wait;         /* does not leave a stop: the spindle has not reached its speed */
+    bool settles;      /* does not pass one: what is sent has not come to it yet */
     bool tool_waits;   /* a tool change is not passed: the changer has not answered */
     bool measures; /* the spindle's speed, for feeds per revolution; else they are as commanded */
     double spindle_rev_s; /* >= 0; 0 holds them */

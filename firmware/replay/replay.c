@@ -441,7 +441,7 @@ static bool stands_at_stop(struct replay *r, struct motion *m, double rate,
     if (r->state < REPLAY_STOP_REACHED) {
         return false;
     }
-    if (r->state == REPLAY_STOP_TOLD && rate > 0.0 && wanted->stay == MOTION_STAYS_NOT) {
+    if (r->state == REPLAY_STOP_TOLD && rate > 0.0 && !wanted->wait) {
         r->state = REPLAY_RUNS;
         (void)pass_blocks(r, m, false);
         return false;
@@ -468,8 +468,7 @@ enum replay_result takt_replay_cycle(struct replay *r, struct motion *m,
     }
     r->waits = false;
     if (r->state == REPLAY_BETWEEN) {
-        if (wanted->stay != MOTION_STAYS_NOT || rate == 0.0 || !has_begin(r) ||
-            !takt_motion_rests(m)) {
+        if (wanted->wait || rate == 0.0 || !has_begin(r) || !takt_motion_rests(m)) {
             r->waits = r->intake->sections_taken > 0 && rate > 0.0 && !has_begin(r);
             r->starved += r->waits ? 1 : 0;
             stand(m, record);

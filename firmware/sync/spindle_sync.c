@@ -231,7 +231,7 @@ static void start(struct spindle_sync *l)
 
 static void wait_for_spindle(struct spindle_sync *l, const struct motion_operator *wanted)
 {
-    if (wanted->hold != MOTION_GOES || wanted->stay != MOTION_STAYS_NOT) {
+    if (wanted->hold != MOTION_GOES || wanted->wait) {
         l->waited = 0;
     } else if (++l->stood > FEEDBACK_CYCLES && is_turning(l)) {
         start(l);

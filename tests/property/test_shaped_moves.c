@@ -162,7 +162,7 @@ static unsigned run(const struct task *t, uint64_t seed)
         if (takt_motion_wanted(&motion) != NULL) {
             takt_motion_build(&motion);
         }
-        as_programmed.stay = rests_now ? MOTION_STAYS_NOT : MOTION_SETTLES;
+        as_programmed.settles = !rests_now;
         cycle = takt_motion_cycle(&motion, &as_programmed, &record);
         send(t, record.cmd);
         if (rests_now && !rested && takt_shape_is_settled(&shape)) {

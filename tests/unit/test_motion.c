@@ -139,12 +139,12 @@ static void test_a_stop_is_not_passed_before_what_is_sent_has_come_to_it(void)
     push(MOVE_FEED, 1.0, 50.0);
     push(MOVE_DWELL, 0.0, 0.25);
     push_end();
+    asked.settles = true;
     while (record.cmd.at[AXIS_X] < 1.0 || motion.cycles < without) {
         TEST_ASSERT_EQUAL(MOTION_CYCLE, cycle());
-        asked.stay = MOTION_SETTLES;
     }
     TEST_ASSERT_EQUAL(1, record.block);
-    asked.stay = MOTION_STAYS_NOT;
+    asked.settles = false;
     TEST_ASSERT_EQUAL_UINT64(without + 250, run_to_the_end());
 }
 

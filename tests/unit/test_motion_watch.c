@@ -139,7 +139,7 @@ static void test_a_stop_that_may_not_be_left_explains_any_time(void)
 {
     push(MOVE_FEED, 100.0, 100.0);
     takt_path_finish(&path);
-    asked.stay = MOTION_WAITS;
+    asked.wait = true;
     run(LONG_CYCLES);
 }
 
