@@ -57,7 +57,10 @@ static float chord_feed(const struct smooth_limits *machine, float radius)
                       : SINGLE_INFINITY;
 }
 
-/* Of an involute, whose curvature may be infinite at an end, that of its middle. */
+/*
+ * Of an involute, which plan divides into pieces and whose curvature may be a thousandfold at an
+ * end, that of its middle.
+ */
 static void bend(const struct curve *curve, struct curve_bounds *b)
 {
     enum axis first;
@@ -81,6 +84,7 @@ static void bend(const struct curve *curve, struct curve_bounds *b)
 static void bound_plane(const struct smooth_limits *machine, const struct curve_bounds *b,
                         enum axis first, enum axis second, float per_mm, struct course *c)
 {
+    TAKT_ASSERT(b->second[first] > 0.0 && b->third[first] > 0.0);
     const float along = (float)(b->second_along / b->second[first]);
     const float across = (float)(b->third_across / b->third[first]);
     const float a =
@@ -121,17 +125,7 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
             c->line.jerk = single_min(c->line.jerk, (float)machine->jerk_mm_s3[axis] / part);
         }
     }
-    if (b.second[first] > 0.0) {
-        bound_plane(machine, &b, first, second, per_mm, c);
-    } else {
-        c->line.acceleration =
-            single_min(c->line.acceleration, (float)maths_min(machine->acceleration_mm_s2[first],
-                                                              machine->acceleration_mm_s2[second]) *
-                                                 per_mm);
-        c->line.jerk = single_min(
-            c->line.jerk,
-            (float)maths_min(machine->jerk_mm_s3[first], machine->jerk_mm_s3[second]) * per_mm);
-    }
+    bound_plane(machine, &b, first, second, per_mm, c);
 }
 
 struct course takt_course_of(const struct route *r, const struct smooth_limits *machine,
@@ -194,11 +188,14 @@ struct braking_limits takt_course_ramps(const struct course *c, float budget)
 
 /* -- junctions -- */
 
-/* P v + Q v^2 is what one takes of the jerk, R v of the acceleration; |D| cycle/4 its chord. */
+/*
+ * P v + Q v^2 is what one takes of the jerk, R v of the acceleration; its chord is |D| cycle/4 v
+ * long over X, Y and Z, and may be so long.
+ */
 struct steps {
     float p, q, r;
     float chord_s;
-    float chord_mm; /* may be so long */
+    float chord_mm;
 };
 
 static void measure(const struct route *r, const struct smooth_limits *machine, uint32_t index,

@@ -1,6 +1,8 @@
 /*
  * What bounds the exact path on an element of the route, and at the junctions between them: as
- * plan/block.c and plan/junction.c have it, which say why, in single precision.
+ * plan/block.c and plan/junction.c have it, which say why, in single precision. Left out is what
+ * hardly ever binds: blocks of less than an eighth of a cycle, axes beside an arc of two radii, and
+ * a tolerance that is less than a chord.
  */
 #ifndef TAKT_SMOOTH_EXACT_COURSE_H
 #define TAKT_SMOOTH_EXACT_COURSE_H

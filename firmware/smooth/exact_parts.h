@@ -1,7 +1,7 @@
 /*
  * Parts of the axes' limits that motions of the exact path take, and when a junction is passed.
- * plan/block.c and plan/junction.c, which say why, go by them; exact_time.c tells by them how
- * long that takes.
+ * plan/block.c and plan/junction.c, which say why, go by them; exact_course.c tells by them
+ * how long that takes.
  */
 #ifndef TAKT_SMOOTH_EXACT_PARTS_H
 #define TAKT_SMOOTH_EXACT_PARTS_H

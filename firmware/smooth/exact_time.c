@@ -131,7 +131,7 @@ static float time_with(struct exact_work *work, const struct smooth_limits *mach
 /*
  * The best acceleration for ramps by a law of w windows, from rest to rest: of v/a + w a/j it is
  * sqrt(v j/w); where the feed is not reached four windows take the least, 2 a W^2 = L:
- * cbrt(L (j/w)^2/2).
+ * cbrt(L (j/w)^2/2). The second is less than the first where it is not, L < 2 v W.
  */
 static float box_of(const struct exact_leg *leg, const struct smooth_limits *machine)
 {
@@ -179,10 +179,14 @@ float takt_exact_time(const struct route *r, const struct smooth_limits *machine
 {
     struct span s = {.count = 0};
     struct course_joint start = {0.0f, 0.0f};
-    struct course before = takt_course_of(r, machine, at_mm, element);
     float time = 0.0f;
 
     TAKT_ASSERT(element < end && end - element <= SMOOTH_ELEMENTS_MAX);
+    while (element + 1 < end && route_end_of(r, element) - at_mm < CURVE_LENGTH_MIN_MM) {
+        element++; /* at its end: what rests at a corner is on the element before */
+    }
+    struct course before = takt_course_of(r, machine, at_mm, element);
+
     for (uint32_t i = element + 1; i < end; i++) {
         struct course after = takt_course_of(r, machine, 0.0, i);
         const struct course_joint at = takt_course_join(r, machine, i, &before, &after);

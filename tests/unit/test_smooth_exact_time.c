@@ -114,6 +114,29 @@ static void test_a_circle_takes_its_way_at_the_feed_that_its_curvature_allows(vo
     TEST_ASSERT_TRUE(time_s > way_s && time_s < way_s + 0.5);
 }
 
+/* From rest at a corner, which the window has on the element before it. */
+static void test_from_the_end_of_an_element_on_the_next_one_alone_counts(void)
+{
+    static const struct point at[2][3] = {{{{0}}, {{20.0}}, {{30.0}}},
+                                          {{{0}}, {{20.0}}, {{20.0, 10.0}}}};
+    const struct move move = {.kind = MOVE_FEED, .feed_mm_s = 50.0, .tolerance_mm = 0.01};
+
+    for (unsigned k = 0; k < 2; k++) {
+        struct curve line[2];
+
+        takt_route_init(&route, &limits, 0.01);
+        route.moved = 3;
+        for (unsigned i = 0; i < 2; i++) {
+            TEST_ASSERT_TRUE(takt_curve_set_line(&line[i], &at[k][i], &at[k][i + 1]));
+            takt_route_push(&route, &move, i, &line[i]);
+        }
+        const float next = takt_exact_time(&route, &limits, 20.0, 1, 2, &work);
+
+        TEST_ASSERT_TRUE(next > 0.2f);
+        TEST_ASSERT_EQUAL_FLOAT(next, takt_exact_time(&route, &limits, 20.0, 0, 2, &work));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -121,5 +144,6 @@ int main(void)
     RUN_TEST(test_a_junction_that_is_faster_than_both_sides_is_passed);
     RUN_TEST(test_a_line_takes_its_way_at_the_feed_and_a_ramp_or_four_of_acceleration);
     RUN_TEST(test_a_circle_takes_its_way_at_the_feed_that_its_curvature_allows);
+    RUN_TEST(test_from_the_end_of_an_element_on_the_next_one_alone_counts);
     return UNITY_END();
 }
