@@ -33,7 +33,7 @@
 #define RATE_RATIO 2.0
 
 #define VELOCITY_PART 0.5
-#define JERK_PART     3.5
+#define JERK_PART     3.4 /* half of it is less than sqrt(3) */
 
 /*
  * Most of J t^2, in V: acceleration_for takes J t^2/72 off V, of which a quarter may go. Where a
