@@ -11,6 +11,7 @@
 #ifndef TAKT_MOTION_MOTION_H
 #define TAKT_MOTION_MOTION_H
 
+#include "base/handoff.h"
 #include "motion/average.h"
 #include "motion/cycle_record.h"
 #include "motion/hold.h"
@@ -190,11 +191,14 @@ bool takt_motion_rests(const struct motion *m);
 /* Where the path is not gone on along: line of the program. After MOTION_STALLED. */
 uint32_t takt_motion_stalled_line(const struct motion *m);
 
-/* Has there been a ceiling? */
+/*
+ * Has there been a ceiling? Also for the background, between whose reads the cycle may end the
+ * path: of that the count of restarts tells, last.
+ */
 static inline bool motion_has_ceiling(const struct motion *m)
 {
     return m->reference.here.ceiling != NULL || m->reference.coming.ceiling != NULL ||
-           m->restarts > 0;
+           handoff_get_count(&m->restarts) > 0;
 }
 
 /* Has everything on the path been done? */
