@@ -102,9 +102,11 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
     bool held = wanted->hold != MOTION_GOES && m->end != MOTION_CHANGES_TOOL;
 
     *block = NULL;
-    m->end = m->end == MOTION_ARRIVED ? MOTION_ARRIVED : MOTION_UNDER_WAY;
     if (m->end == MOTION_ARRIVED && wanted->settles) {
         return rest(m);
+    }
+    if (m->end > MOTION_ARRIVED) {
+        m->end = MOTION_UNDER_WAY;
     }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
         if (m->end == MOTION_ARRIVED && !is_kept(m, held)) {

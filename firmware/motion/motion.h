@@ -95,7 +95,7 @@ struct motion_beside {
     struct hold hold;
 };
 
-/* At the end of the oldest block. */
+/* At the end of the oldest block; what is told of this cycle alone comes last. */
 enum motion_end {
     MOTION_UNDER_WAY,
     MOTION_ARRIVED,      /* the next cycle passes it */
