@@ -24,7 +24,21 @@ static bool counts(const struct route_element *e, unsigned axis)
     return e->rotary ? axis >= AXIS_LINEAR_COUNT : axis < AXIS_LINEAR_COUNT;
 }
 
-/* Bounds on a line: what each axis leaves along it. */
+/* What an axis leaves along the path, of which it moves a part. */
+static void bound_axis(const struct smooth_limits *machine, unsigned axis, float part,
+                       struct course *c)
+{
+    c->line.acceleration =
+        single_min(c->line.acceleration, (float)machine->acceleration_mm_s2[axis] / part);
+    c->line.jerk = single_min(c->line.jerk, (float)machine->jerk_mm_s3[axis] / part);
+}
+
+static void bound_velocity(const struct smooth_limits *machine, unsigned axis, float part,
+                           struct course *c)
+{
+    c->cap = single_min(c->cap, (float)machine->velocity_mm_s[axis] / part);
+}
+
 static void bound_line(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                        struct course *c)
 {
@@ -39,10 +53,8 @@ static void bound_line(const struct route *r, const struct smooth_limits *machin
 
         square += counts(e, axis) ? part * part : 0.0f;
         if (part > 0.0f) {
-            c->cap = single_min(c->cap, (float)machine->velocity_mm_s[axis] / part);
-            c->line.acceleration =
-                single_min(c->line.acceleration, (float)machine->acceleration_mm_s2[axis] / part);
-            c->line.jerk = single_min(c->line.jerk, (float)machine->jerk_mm_s3[axis] / part);
+            bound_velocity(machine, axis, part, c);
+            bound_axis(machine, axis, part, c);
         }
     }
     c->program = e->programmed_mm_s / single_sqrt(square);
@@ -61,17 +73,15 @@ static float chord_feed(const struct smooth_limits *machine, float radius)
  * Of an involute, which plan divides into pieces and whose curvature may be a thousandfold at an
  * end, that of its middle.
  */
-static void bend(const struct curve *curve, struct curve_bounds *b)
+static void bend(const struct curve *curve, enum axis first, enum axis second,
+                 struct curve_bounds *b)
 {
-    enum axis first;
-    enum axis second;
     struct point k;
 
     takt_curve_bound(curve, b);
     if (curve->kind != CURVE_INVOLUTE) {
         return;
     }
-    (void)takt_curve_plane(curve, &first, &second);
     takt_curve_curvature(curve, 0.5 * curve->length_mm, &k);
     b->second[first] = maths_sqrt(k.at[first] * k.at[first] + k.at[second] * k.at[second]);
     b->third[first] = b->second[first] * b->second[first];
@@ -108,8 +118,8 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
     enum axis second = AXIS_COUNT;
 
     takt_route_curve(r, index, &curve);
-    bend(&curve, &b);
     (void)takt_curve_plane(&curve, &first, &second);
+    bend(&curve, first, second, &b);
     c->program = per_mm * route_element(r, index)->programmed_mm_s;
     c->cap = per_mm * chord_feed(machine, (float)b.radius_min_mm);
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -117,12 +127,10 @@ static void bound_curved(const struct route *r, const struct smooth_limits *mach
         const float part = (float)b.first[axis] / per_mm;
 
         if (part > 0.0f) {
-            c->cap = single_min(c->cap, (float)machine->velocity_mm_s[axis] / part);
+            bound_velocity(machine, axis, part, c);
         }
         if (part > 0.0f && axis != first && axis != second) {
-            c->line.acceleration =
-                single_min(c->line.acceleration, (float)machine->acceleration_mm_s2[axis] / part);
-            c->line.jerk = single_min(c->line.jerk, (float)machine->jerk_mm_s3[axis] / part);
+            bound_axis(machine, axis, part, c);
         }
     }
     bound_plane(machine, &b, first, second, per_mm, c);

@@ -158,20 +158,19 @@ static struct exact_leg whole_of(const struct exact_work *work, const struct spa
     return all;
 }
 
-/* With windows that suit all of them, the first one, and the last one. */
+/* With windows that suit all of them, the first one, or the last one. */
 static float least_time(struct exact_work *work, const struct smooth_limits *machine,
                         const struct span *s)
 {
     const struct exact_leg all = whole_of(work, s);
+    const struct exact_leg *const suited[3] = {&all, &work->leg[0], &work->leg[s->count - 1]};
+    const unsigned tried = s->count == 1 ? 1 : 3;
+    float least = SINGLE_INFINITY;
 
-    if (!(all.length > 0.0f)) {
-        return 0.0f;
+    for (unsigned i = 0; i < tried && all.length > 0.0f; i++) {
+        least = single_min(least, time_with(work, machine, s, box_of(suited[i], machine)));
     }
-    const float time = time_with(work, machine, s, box_of(&all, machine));
-
-    return s->count == 1
-               ? time
-               : single_min(time, time_with(work, machine, s, box_of(&work->leg[0], machine)));
+    return all.length > 0.0f ? least : 0.0f;
 }
 
 float takt_exact_time(const struct route *r, const struct smooth_limits *machine, double at_mm,

@@ -269,6 +269,22 @@ def curves_are_handed_on_as_they_are():
             t.check(time_s <= 1.06 * exact_s, f"{name}, F{feed} P{tolerance}: no slower than the exact path", time_s, exact_s)
 
 
+def splines_are_weighed_by_what_plan_makes_of_them():
+    """Each block by its own limits; what is not known of a chain gains no more than what is; and what is, is looked at finely."""
+    two = "G5 I6.291 J-1.395 P-3.855 Q4.350 X15.849 Y2.205\nG5 I1.845 J-2.581 P-3.827 Q0.444 X22.310 Y6.593\n"
+    slow = "G5 I2.709 J-1.366 P-1.859 Q0.412 X5.371 Y-4.617\n"
+    full = "G5.1 X1.830 Y1.626 I0.915 J0.253\nG5 I1.686 J-1.286 P-2.233 Q0.515 X6.878 Y1.997\nG5.1 X22.622 Y9.572 I7.872 J-3.260\n"
+    for name, curve, feed, tolerance, (a, j), cycle_us, part in (
+        ("where ramps are on other blocks than the sharpest", two, 792, 0.5344, (300, 585500), 4000, 1.005),
+        ("at its feed all along", slow, 808, 0.0032, (2786, 711900), 2000, 1.005),
+        ("of more pieces than are known at a time", full, 1306, 0.5806, (371, 818800), 1000, 0.95),
+    ):
+        program = f"G64 P{tolerance}\nG1 X0 Y0 F{feed}\n{curve}M2\n"
+        machine = hunt_programs.Machine({axis: (100.0, a, j) for axis in "XYZ"}, cycle_us)
+        exact_s, time_s = time_of(program, machine, "--exact-path"), time_of(program, machine)
+        t.check(time_s <= part * exact_s, f"a spline {name} takes {part} of the exact path's time at most", time_s, exact_s)
+
+
 def what_an_override_may_ask_for_stops_nobody():
     """Junctions that are fast enough for the programmed feed, and not for 120 % of it, are not landed on."""
     program = lines(bends_slowly(), 0.0021)
@@ -311,6 +327,7 @@ rapids_choose_nothing_for_what_follows()
 as_cam_systems_write()
 on_long_cycles_the_path_is_timed_with_its_chords()
 curves_are_handed_on_as_they_are()
+splines_are_weighed_by_what_plan_makes_of_them()
 what_an_override_may_ask_for_stops_nobody()
 short_chains_stand_no_longer_by_a_higher_acceleration()
 the_path_is_timed_from_rest_to_rest()
