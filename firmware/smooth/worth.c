@@ -196,12 +196,9 @@ void takt_worth_run(const struct worth_window *now, float rate, struct worth_run
 }
 
 /*
- * Of the path's time on what is not known yet, where that has no rest, so much of what is known may
- * be gained at most: and no more than that is slower than its feed.
+ * What the path on all that is known is slower than its feed, but where it begins and ends: on what
+ * is not known yet, where it has no rest, a curve gains no more.
  */
-#define UNKNOWN 0.05f
-
-/* What the path on all that is known is slower than its feed, but where it begins and ends. */
 static float slower_than_feed(const struct worth_window *now, float path_s)
 {
     const struct route *r = &now->of->route;
@@ -229,7 +226,7 @@ bool takt_worth_path_from_rest(const struct worth_window *now, const struct wort
         return path_time_of_all(now) < time_of_all(now, whole ? times : LONGER * times);
     }
     const float path_s = path_time_of_all(now);
-    const float gain = single_clamp(slower_than_feed(now, path_s), 0.0f, UNKNOWN * path_s);
+    const float gain = single_max(0.0f, slower_than_feed(now, path_s));
 
     return times > 1.0f || path_s + gain < time_of_all(now, times);
 }
