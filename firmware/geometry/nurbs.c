@@ -8,7 +8,7 @@
  *     step r: point_i = (1 - a) point_i-1 + a point_i,   a = (u_r - t_i) / (t_i+d+1-r - t_i)
  *
  * A piece takes place, direction and curvature from both ends and its length from Gauss-Legendre
- * quadrature, and is halved until three places of it are as near to the curve as NURBS_ERROR_MM and
+ * quadrature, and is halved until three places of it are as near to the curve as is asked for and
  * its tangent there has length 1. Its error grows like L^6 and is largest in the middle; halving
  * makes it 64 times less.
  *
@@ -28,8 +28,12 @@
  */
 #define HALVINGS_MAX 40
 
-/* The tangent may be so much longer or shorter than 1. */
-#define UNEVEN_MAX 1e-6
+/*
+ * The tangent may be so much longer or shorter than 1: on the exact path, and within a tolerance, a
+ * tenth of what the feed may be above a limit.
+ */
+#define UNEVEN_EXACT 1e-6
+#define UNEVEN_MAX   1e-5
 
 /* A piece turns by less than that, rad: some 30 degrees. */
 #define TURN_MAX 0.5
@@ -253,11 +257,12 @@ static double distance_mm(const struct part *part, double v, const struct point 
 
 /* Does its quintic lie on the part, with a tangent of length 1? Numbers that are none do not. */
 static bool fits(const struct part *part, const struct place *from, const struct place *to,
-                 const struct curve_course *course)
+                 const struct curve_course *course, double error_mm)
 {
     const struct point start = {{from->at[0], from->at[1]}};
     const struct point end = {{to->at[0], to->at[1]}};
     const double turn = course->heading_rad[1] - course->heading_rad[0];
+    const double uneven_max = maths_min(UNEVEN_MAX, error_mm / NURBS_ERROR_MM * UNEVEN_EXACT);
     struct curve c;
 
     if (maths_abs(turn - MATHS_TWO_PI * takt_maths_round(turn / MATHS_TWO_PI)) > TURN_MAX ||
@@ -273,8 +278,8 @@ static bool fits(const struct part *part, const struct place *from, const struct
         takt_curve_tangent(&c, s_mm, &t);
         const double uneven = t.at[0] * t.at[0] + t.at[1] * t.at[1] - 1.0;
 
-        if (!(maths_abs(uneven) <= 2.0 * UNEVEN_MAX &&
-              distance_mm(part, 0.25 * quarter, &x) <= NURBS_ERROR_MM)) {
+        if (!(maths_abs(uneven) <= 2.0 * uneven_max &&
+              distance_mm(part, 0.25 * quarter, &x) <= error_mm)) {
             return false;
         }
     }
@@ -285,7 +290,7 @@ static bool fits(const struct part *part, const struct place *from, const struct
  * From n->at to that parameter. False: it must be shorter. It begins where the last piece ends,
  * less than CURVE_LENGTH_MIN_MM beside the curve: parts too short for a piece are passed over.
  */
-static bool make_piece(const struct nurbs *n, double to, struct nurbs_piece *piece)
+static bool make_piece(const struct nurbs *n, double to, double error_mm, struct nurbs_piece *piece)
 {
     struct part part;
     struct place ends[2];
@@ -301,7 +306,7 @@ static bool make_piece(const struct nurbs *n, double to, struct nurbs_piece *pie
         return true;
     }
     return set_end(&ends[0], 0, &piece->course) && set_end(&ends[1], 1, &piece->course) &&
-           fits(&part, &ends[0], &ends[1], &piece->course);
+           fits(&part, &ends[0], &ends[1], &piece->course, error_mm);
 }
 
 /* A part without length, of equal points, is none: the next one begins where it does. */
@@ -329,8 +334,9 @@ static bool lead(const struct nurbs *n, struct nurbs_piece *piece)
     return piece->course.length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
-enum nurbs_result takt_nurbs_next(struct nurbs *n, struct nurbs_piece *piece)
+enum nurbs_result takt_nurbs_next(struct nurbs *n, double error_mm, struct nurbs_piece *piece)
 {
+    TAKT_ASSERT(error_mm >= NURBS_ERROR_MM);
     if (n->within && lead(n, piece)) {
         memcpy(n->at_mm, piece->end_mm, sizeof(n->at_mm));
         return NURBS_PIECE;
@@ -340,7 +346,7 @@ enum nurbs_result takt_nurbs_next(struct nurbs *n, struct nurbs_piece *piece)
         double way = end - n->at;
         unsigned halvings = 0;
 
-        while (!make_piece(n, halvings == 0 ? end : n->at + way, piece)) {
+        while (!make_piece(n, halvings == 0 ? end : n->at + way, error_mm, piece)) {
             way *= 0.5;
             if (++halvings > HALVINGS_MAX || !(n->at + way > n->at)) {
                 n->within = false;

@@ -1,6 +1,6 @@
 /*
  * NURBS in a plane: control points and knots that come one by one -> pieces of quintics (curve.h),
- * each within NURBS_ERROR_MM of the curve.
+ * each within a given error of the curve.
  *
  * A knot decides a span when the points and knots before it are known, so only 2 order - 1 of each
  * are kept, however many there are. A curve whose first knots are not all equal does not begin at
@@ -19,7 +19,7 @@
 /* Points and knots kept. */
 #define NURBS_KEPT (2 * NURBS_ORDER_MAX - 1)
 
-/* How far a piece may be off the curve. */
+/* The least error that can be asked for: that of the exact path. */
 #define NURBS_ERROR_MM 5e-10
 
 struct nurbs {
@@ -56,6 +56,7 @@ void takt_nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight)
  */
 void takt_nurbs_add_knot(struct nurbs *n, double knot);
 
-enum nurbs_result takt_nurbs_next(struct nurbs *n, struct nurbs_piece *piece);
+/* error_mm: how far the piece may be off the curve, NURBS_ERROR_MM or more. */
+enum nurbs_result takt_nurbs_next(struct nurbs *n, double error_mm, struct nurbs_piece *piece);
 
 #endif

@@ -20,6 +20,12 @@
  */
 #define START_MM 0.01
 
+/*
+ * So much of G64 P may take pieces off the curve: they are three times as long as those of the
+ * exact path, and as many of them as are smoothed at a time reach as much farther.
+ */
+#define ERROR_OF_TOLERANCE 1e-4
+
 bool takt_spline_allows(struct program *p, const struct program_code *code)
 {
     return !p->cycle.spline_open || code->run == takt_spline_start || code->step == STEP_FEED ||
@@ -318,14 +324,22 @@ static bool add_line(struct program *p, const struct program_code *code)
 
 /* -- pieces -- */
 
-static enum nurbs_result next_piece(struct program_spline *s, struct nurbs_piece *piece)
+static double error_mm(const struct program *p)
 {
-    enum nurbs_result result = takt_nurbs_next(&s->nurbs, piece);
+    const double tolerance_mm = p->modes.path == PATH_BLEND ? p->modes.tolerance_mm : 0.0;
+
+    return maths_max(NURBS_ERROR_MM, ERROR_OF_TOLERANCE * tolerance_mm);
+}
+
+static enum nurbs_result next_piece(struct program *p, struct nurbs_piece *piece)
+{
+    struct program_spline *s = &p->cycle.spline;
+    enum nurbs_result result = takt_nurbs_next(&s->nurbs, error_mm(p), piece);
 
     while (result == NURBS_NONE && s->closing > 0) {
         takt_nurbs_add_knot(&s->nurbs, s->knot_end);
         s->closing--;
-        result = takt_nurbs_next(&s->nurbs, piece);
+        result = takt_nurbs_next(&s->nurbs, error_mm(p), piece);
     }
     return result;
 }
@@ -351,7 +365,7 @@ static bool check_pieces(struct program *p)
     struct nurbs_piece piece;
     bool good = true;
 
-    while (good && (result = next_piece(&p->cycle.spline, &piece)) != NURBS_NONE) {
+    while (good && (result = next_piece(p, &piece)) != NURBS_NONE) {
         struct move m;
 
         if (result == NURBS_CUSP) {
@@ -371,7 +385,7 @@ bool takt_spline_next(struct program *p, struct move *move)
 {
     struct nurbs_piece piece;
 
-    if (next_piece(&p->cycle.spline, &piece) != NURBS_PIECE) {
+    if (next_piece(p, &piece) != NURBS_PIECE) {
         p->cycle.code = NULL;
         return false;
     }

@@ -96,7 +96,7 @@ static bool next_piece(const struct task *t, struct nurbs_piece *piece)
 {
     enum nurbs_result result;
 
-    while ((result = takt_nurbs_next(&ahead.nurbs, piece)) == NURBS_NONE &&
+    while ((result = takt_nurbs_next(&ahead.nurbs, NURBS_ERROR_MM, piece)) == NURBS_NONE &&
            ahead.knots < t->points + t->order) {
         add_knot(t);
     }

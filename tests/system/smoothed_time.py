@@ -270,14 +270,18 @@ def curves_are_handed_on_as_they_are():
 
 
 def splines_are_weighed_by_what_plan_makes_of_them():
-    """Each block by its own limits; what is not known of a chain gains no more than what is; and what is, is looked at finely."""
+    """Each block by its own limits; what is not known of a chain gains no more than what is; what is, is looked at finely, and is much of a chain."""
     two = "G5 I6.291 J-1.395 P-3.855 Q4.350 X15.849 Y2.205\nG5 I1.845 J-2.581 P-3.827 Q0.444 X22.310 Y6.593\n"
     slow = "G5 I2.709 J-1.366 P-1.859 Q0.412 X5.371 Y-4.617\n"
     full = "G5.1 X1.830 Y1.626 I0.915 J0.253\nG5 I1.686 J-1.286 P-2.233 Q0.515 X6.878 Y1.997\nG5.1 X22.622 Y9.572 I7.872 J-3.260\n"
+    small = "G5 I7.581 J2.160 P-3.469 Q3.474 X15.013 Y-9.942\nG5 I0.709 J-0.609 P-0.630 Q-0.518 X16.656 Y-9.412\n"
+    large = "G5.2 X5.893 Y0 P1\nX4.314 Y1.297 P1\nX4.313 Y4.562 P1\nG5.3\n"
     for name, curve, feed, tolerance, (a, j), cycle_us, part in (
         ("where ramps are on other blocks than the sharpest", two, 792, 0.5344, (300, 585500), 4000, 1.005),
         ("at its feed all along", slow, 808, 0.0032, (2786, 711900), 2000, 1.005),
         ("of more pieces than are known at a time", full, 1306, 0.5806, (371, 818800), 1000, 0.95),
+        ("of pieces as long as a small tolerance lets them be", small, 5486, 0.0027, (541.9, 65388.4), 4000, 0.7),
+        ("of pieces as long as a large tolerance lets them be", large, 3451, 0.3942, (251.6, 246653.9), 1000, 0.9),
     ):
         program = f"G64 P{tolerance}\nG1 X0 Y0 F{feed}\n{curve}M2\n"
         machine = hunt_programs.Machine({axis: (100.0, a, j) for axis in "XYZ"}, cycle_us)

@@ -14,16 +14,18 @@
 #define POINTS_MAX 40
 #define LOOKS      16
 
-/* 1e-9 mm is what is asked for; a thousandth more is rounding of coordinates. */
-#define NEAR_MM 1.001e-9
+/* 1e-9 mm on the exact path; a thousandth more is rounding of coordinates. */
+#define NEAR_MM (2.002 * error_mm)
 
 static uint64_t seed;
+static double error_mm; /* asked for */
 static struct curve piece[PIECES_MAX];
 static unsigned pieces;
 
 void setUp(void)
 {
     seed = 1;
+    error_mm = NURBS_ERROR_MM;
     pieces = 0;
 }
 
@@ -57,7 +59,7 @@ static enum nurbs_result take_pieces(struct nurbs *n, struct point *at)
     struct nurbs_piece p;
     enum nurbs_result result;
 
-    while ((result = takt_nurbs_next(n, &p)) == NURBS_PIECE) {
+    while ((result = takt_nurbs_next(n, error_mm, &p)) == NURBS_PIECE) {
         struct point end = *at;
 
         end.at[AXIS_X] = p.end_mm[0];
@@ -74,6 +76,7 @@ static void divide(const struct whole *w)
     struct point at = {{w->point[0][0], w->point[0][1]}};
     struct nurbs n;
 
+    pieces = 0;
     takt_nurbs_open(&n, w->order);
     for (unsigned i = 0; i < w->count + w->order; i++) {
         if (i < w->count) {
@@ -204,7 +207,6 @@ static void test_a_circle_is_one(void)
     for (unsigned k = 0; k < 4; k++) {
         const double r = radius[k];
 
-        pieces = 0;
         set_circle(&w, r);
         divide(&w);
         for (unsigned i = 0; i < pieces; i++) {
@@ -244,10 +246,27 @@ static void test_random_splines_are_within_a_millionth_of_a_micrometre_of_closed
     for (unsigned i = 0; i < 30; i++) {
         const double size_mm = takt_maths_exp(random_between(-2.3, 6.9));
 
-        pieces = 0;
         set_random(&w, NURBS_ORDER_MIN + i % 5, 6 + i % 4, size_mm, i % 2 == 0);
         divide(&w);
         TEST_ASSERT_TRUE(off_closed_form(&w) <= NEAR_MM);
+    }
+}
+
+/* From that of the exact path to some 0.05 mm: never more pieces for a larger one. */
+static void test_an_error_that_may_be_larger_makes_fewer_pieces_within_it(void)
+{
+    struct whole w;
+
+    for (unsigned i = 0; i < 30; i++) {
+        const double size_mm = takt_maths_exp(random_between(-2.3, 6.9));
+        unsigned before = PIECES_MAX;
+
+        set_random(&w, 4 + i % 3, 8, size_mm, i % 2 == 0);
+        for (error_mm = NURBS_ERROR_MM; error_mm < 0.05; error_mm *= 40.0) {
+            divide(&w);
+            TEST_ASSERT_TRUE(pieces <= before && off_closed_form(&w) <= NEAR_MM);
+            before = pieces;
+        }
     }
 }
 
@@ -278,7 +297,6 @@ static void test_tangent_and_curvature_go_on_from_piece_to_piece(void)
     struct whole w;
 
     for (unsigned i = 0; i < 20; i++) {
-        pieces = 0;
         set_random(&w, 4 + i % 3, 9, 50.0, true);
         divide(&w);
         for (unsigned k = 0; k + 1 < pieces; k++) {
@@ -338,7 +356,6 @@ static void test_bounds_hold_everywhere_and_are_no_wider_than_they_need_be(void)
     struct whole w;
 
     for (unsigned i = 0; i < 20; i++) {
-        pieces = 0;
         set_random(&w, 3 + i % 4, 8, 20.0, i % 2 == 0);
         divide(&w);
         for (unsigned k = 0; k < pieces; k++) {
@@ -400,7 +417,6 @@ static void test_pieces_are_even_beside_parts_too_short_for_a_piece(void)
     for (unsigned i = 0; i < 40; i++) {
         double knot = 0.0;
 
-        pieces = 0;
         set_random(&w, 3 + i % 4, 16, 3.0, true);
         for (unsigned k = w.order; k < w.count + w.order; k++) {
             knot += k <= w.count ? takt_maths_exp(random_between(-7.0, 7.0)) : 0.0;
@@ -469,6 +485,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_circle_is_one);
     RUN_TEST(test_random_splines_are_within_a_millionth_of_a_micrometre_of_closed_form);
+    RUN_TEST(test_an_error_that_may_be_larger_makes_fewer_pieces_within_it);
     RUN_TEST(test_four_points_are_a_bezier_curve);
     RUN_TEST(test_tangent_and_curvature_go_on_from_piece_to_piece);
     RUN_TEST(test_bounds_hold_everywhere_and_are_no_wider_than_they_need_be);
