@@ -32,7 +32,7 @@
 /* What is narrower or finer takes more planning: it must take this part of the time, or less. */
 #define WORTH 0.995f
 
-/* And this part, or less, where more follows than is known: it stays for that as well. */
+/* And this part, or less, a narrower one where more follows than is known: it stays for that. */
 #define WORTH_AHEAD 0.97f
 
 /* The chain's end, where the axes rest. */
@@ -61,6 +61,7 @@ struct rest {
 
 /* How far a trial has come. */
 struct going {
+    float worth;      /* the part of the quickest one's time that it must take, or less */
     unsigned windows; /* behind it, */
     float spent_s;    /* and what they took, */
     float rate;       /* and that of nominal time there */
@@ -136,13 +137,12 @@ static enum outcome judge(struct smooth *s, union smooth_scratch *scratch, struc
     const bool last = ends || (s->window.at_end && !smooth_is_finished(s)) || s->proved == 0;
     const bool was_quicker = is_quicker(g, best);
     const double to_mm = ends ? AT_REST : s->window.at_mm[now.pieces + 1];
-    const float worth = smooth_is_finished(s) ? WORTH : WORTH_AHEAD;
     struct worth_run run;
 
     now.begin_s = g->windows == 0 ? now.begin_s : 0.0f;
     g->to_mm = maths_max(g->to_mm, to_mm);
     if (!was_quicker && is_quicker(g, best) &&
-        g->spent_s + time_to(now, g->rate, best->far.to_mm) >= worth * best->far.time_s) {
+        g->spent_s + time_to(now, g->rate, best->far.to_mm) >= g->worth * best->far.time_s) {
         return SLOWER;
     }
     g->windows++;
@@ -164,7 +164,11 @@ static enum outcome judge(struct smooth *s, union smooth_scratch *scratch, struc
 static bool try_one(struct smooth *s, union smooth_scratch *scratch, const struct rest *from,
                     struct trial now, struct quickest *best, struct verifier_verdict *v)
 {
-    struct going g = {.rate = 1.0f, .to_mm = SMOOTH_NOWHERE_MM};
+    struct going g = {
+        .worth = smooth_is_finished(s) || now.fine < 1.0f ? WORTH : WORTH_AHEAD,
+        .rate = 1.0f,
+        .to_mm = SMOOTH_NOWHERE_MM,
+    };
     enum outcome outcome = GOES_ON;
 
     begin(s, scratch, from, &now, v);
