@@ -155,6 +155,7 @@ static void refuse_bits(struct translator *t, const struct line_word *w)
     const char *combines = NULL;
 
     for (const char *c = text; c < &t->line.text[w->end]; c++) {
+        c += *c == '<' ? strcspn(c, ">") : 0; /* #<force> has none */
         if (line_begins(c, "and") || line_begins(c, "or"))
             combines = c;
         for (size_t i = 0; i < sizeof comparisons / sizeof comparisons[0]; i++) {
@@ -300,10 +301,14 @@ static void translate_foreign(struct translator *t)
     if (translate_is(t, TRANSLATE_MARLIN))
         printer_leave_macro(t);
     translate_numbers(t);
+    if (translate_is(t, TRANSLATE_MACROS))
+        variables_translate(t);
     names_begin(t);
     names_translate(t);
     if (translate_is(t, TRANSLATE_MACROS)) {
         translate_assignments(t);
+        variables_set(t);
+        offsets_translate(t);
         if (t->survey.lathe) {
             turning_translate(t);
             passes_translate(t);

@@ -16,6 +16,12 @@ void names_translate(struct translator *t);
 void names_survey(struct survey *s, const struct line *l);
 void names_begin(struct translator *t);
 
+/* Variables of the control (#5041) of Fanuc and Haas; those of offsets that are given a value. */
+void variables_translate(struct translator *t);
+void variables_set(struct translator *t);
+/* G10 of Fanuc and Haas. */
+void offsets_translate(struct translator *t);
+
 /* @ and ^ as X and Y. */
 void polar_translate(struct translator *t);
 

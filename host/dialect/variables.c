@@ -1,0 +1,207 @@
+/*
+ * Variables of the control of Fanuc and Haas, as what LinuxCNC calls the same:
+ *
+ *     #5003 #5041                 #5422 #5420          where the tool is, work coordinates
+ *     #5021                       #<_abs_x>            the same, machine coordinates
+ *     #5221                       [#5221/[1+24.4*#<_imperial>]]    G54, in the units in effect
+ *     #5221=#1                    G10 L2 P1 X[#1]      which counts at once
+ *     #4003 #4109                 [90+#<_incremental>] #<_feed>    what is in effect
+ *
+ * All others would be 0 here without a word, so reading them is an error.
+ */
+#include "dialect/translate.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Parameters of LinuxCNC in mm, in the units in effect. */
+#define IN_UNITS "/[1+24.4*#<_imperial>]"
+
+#define OWN_LAST       999U /* the program's own */
+#define POSITIONS      6U
+#define SYSTEM_FIRST   5221U
+#define SYSTEM_SIZE    20U
+#define SYSTEM_LAST    (SYSTEM_FIRST + 6U * SYSTEM_SIZE - 1U)
+#define RUNNING_OFFSET 200U /* #4201 is #4001 of the block that runs */
+
+static const char axes[] = "xyzabc";
+
+static const struct mode {
+    uint32_t number;
+    const char *text;
+} modes[] = {
+    {4001, "[#<_motion_mode>/10*[#<_motion_mode> LE 30]]"},
+    {4002, "[#<_plane>/10]"},
+    {4003, "[90+#<_incremental>]"},
+    {4006, "[20+#<_metric>]"},
+    {4007, "[#<_ccomp>/10]"},
+    {4008, "[49-6*#<_tool_offset>]"},
+    {4010, "[98+#<_retract_r_plane>]"},
+    {4014, "[#<_coord_system>/10]"},
+    {4109, "#<_feed>"},
+    {4119, "#<_rpm>"},
+    {4120, "#<_selected_tool>"},
+};
+
+struct place {
+    size_t at, length; /* #5041 in the line */
+    uint32_t number;
+};
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* The next #5041 from a place on, comments aside. False: there is none. */
+static bool find_next(const struct line *l, size_t at, struct place *found)
+{
+    bool comment = false;
+
+    for (; at < l->length && l->text[at] != ';'; at++) {
+        comment = (comment || l->text[at] == '(') && l->text[at] != ')';
+        if (comment || l->text[at] != '#' || !is_digit(l->text[at + 1]))
+            continue;
+        char *end;
+
+        found->number = line_whole((double)strtoul(&l->text[at + 1], &end, 10));
+        found->at = at;
+        found->length = (size_t)(end - &l->text[at]);
+        return true;
+    }
+    return false;
+}
+
+static bool is_within(uint32_t number, uint32_t first, uint32_t count)
+{
+    return number >= first && number < first + count;
+}
+
+static void offset_text(uint32_t number, char *text, size_t size)
+{
+    const uint32_t axis = (number - SYSTEM_FIRST) % SYSTEM_SIZE;
+
+    (void)snprintf(text, size, axis < 3 ? "[#%u" IN_UNITS "]" : "#%u", (unsigned)number);
+}
+
+static const char *mode_text(uint32_t number)
+{
+    number -= is_within(number, 4201, 130) ? RUNNING_OFFSET : 0;
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+        if (modes[i].number == number)
+            return modes[i].text;
+    }
+    return NULL;
+}
+
+/* What the variable is here. False: it has no other name, or none at all. */
+static bool read_text(uint32_t number, char *text, size_t size)
+{
+    const char *mode = mode_text(number);
+
+    if (is_within(number, 5001, POSITIONS))
+        (void)snprintf(text, size, "#%u", (unsigned)(5420U + number - 5001U));
+    else if (is_within(number, 5041, POSITIONS))
+        (void)snprintf(text, size, "#%u", (unsigned)(5420U + number - 5041U));
+    else if (is_within(number, 5021, POSITIONS))
+        (void)snprintf(text, size, "#<_abs_%c>", axes[number - 5021U]);
+    else if (number >= SYSTEM_FIRST && number <= SYSTEM_LAST)
+        offset_text(number, text, size);
+    else if (mode != NULL)
+        (void)snprintf(text, size, "%s", mode);
+    else
+        return false;
+    return true;
+}
+
+/* The program's own, those that mean the same in LinuxCNC, and what is only kept (#3003 = 1). */
+static bool is_known(uint32_t number, bool is_given)
+{
+    const bool linuxcnc = is_within(number, 5061, 10) || is_within(number, 5161, 449);
+    const bool more = number >= 20000 || is_within(number, 10000, 1000);
+
+    return number <= OWN_LAST || linuxcnc || more || is_within(number, 3000, is_given ? 1000 : 1);
+}
+
+static void refuse(struct translator *t, const struct place *p)
+{
+    const struct line_word w = {.begin = (uint16_t)p->at};
+
+    translate_wrong(t, &w,
+                    "'#%u' is a variable of the control that is not known here: a number has to "
+                    "stand in its place",
+                    (unsigned)p->number);
+}
+
+/* #5221=#1: a line of its own, in front; a condition before it would not count. */
+static bool set_offset(struct translator *t, struct line_word *w, uint32_t number)
+{
+    const struct line *l = &t->line;
+    const uint32_t index = number - SYSTEM_FIRST;
+    const uint32_t axis = index % SYSTEM_SIZE;
+
+    if (number < SYSTEM_FIRST || axis >= POSITIONS || t->survey.lathe ||
+        l->word[0].kind == WORD_KEYWORD)
+        return false;
+    translate_add(&t->before, "G10 L2 P%u %c[%.*s]", (unsigned)(1 + index / SYSTEM_SIZE),
+                  axes[axis], (int)(w->end - w->value_begin), &l->text[w->value_begin]);
+    line_blank(&t->line, w);
+    return true;
+}
+
+void variables_set(struct translator *t)
+{
+    for (unsigned i = 0; i < t->line.words; i++) {
+        struct line_word *w = &t->line.word[i];
+        struct place p;
+
+        if (w->kind == WORD_ASSIGNED && find_next(&t->line, w->begin, &p) && p.at == w->begin &&
+            is_within(p.number, 5201, 140) && !set_offset(t, w, p.number))
+            translate_wrong(t, w,
+                            "'#%u' cannot be given a value here: G10 L2 P1 X10 on a line of its "
+                            "own sets G54",
+                            (unsigned)p.number);
+    }
+}
+
+/* #[2000+#4]: numbers of variables that are only known when they are worked out. */
+static void refuse_worked_out(struct translator *t)
+{
+    const struct line *l = &t->line;
+
+    for (size_t at = 0; at + 1 < l->length && strchr("(;", l->text[at]) == NULL; at++) {
+        if (l->text[at] != '#' || l->text[at + 1] != '[')
+            continue;
+        for (size_t i = at + 2; i < l->length && l->text[i] != ']'; i++) {
+            const char before = l->text[i - 1];
+            struct place p = {.at = at};
+
+            if (!is_digit(l->text[i]) || is_digit(before) || before == '.' || before == '#')
+                continue;
+            p.number = line_whole((double)strtoul(&l->text[i], NULL, 10));
+            if (!is_known(p.number, false))
+                refuse(t, &p);
+        }
+    }
+}
+
+void variables_translate(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct place p = {0};
+    char text[64];
+
+    refuse_worked_out(t);
+    for (size_t at = 0; find_next(l, at, &p); at = p.at + 1) {
+        struct line_word w = {.begin = (uint16_t)p.at, .end = (uint16_t)(p.at + p.length)};
+        const bool is_given = line_is_assigned(l, p.at + p.length);
+
+        if (!is_given && read_text(p.number, text, sizeof text)) {
+            (void)line_replace(l, &w, text);
+            p.at += strlen(text) - 1;
+        } else if (!is_known(p.number, is_given)) {
+            refuse(t, &p);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+/*
+ * host/dialect: offsets and variables of the control, which Fanuc and Haas number and count in
+ * other ways than LinuxCNC.
+ */
+#include "dialect_expect.h"
+
+static void wrong_of(enum dialect dialect, const char *from, const char *message)
+{
+    TEST_ASSERT_TRUE(dialect_translate(dialect, &codes, NULL, from, strlen(from), &result));
+    TEST_ASSERT_EQUAL_STRING(message, result.wrong);
+    dialect_text_free(&result.text);
+}
+
+static void wrong(const char *from, const char *message)
+{
+    wrong_of(DIALECT_FANUC, from, message);
+}
+
+#define SUM "/[1+24.4*#<_imperial>]]"
+
+static void test_offsets_set_in_g91_are_added(void)
+{
+    expect(DIALECT_FANUC, "G90 G10 L2 P1 X1.\n", "G90 G10 L2 P1 X1.\n");
+    expect(DIALECT_FANUC, "G91 G10 L2 P1 X1. A2.\n",
+           "G91 G10 L2 P1 x[[1.]+1*#[5201+20*[1]]" SUM " a[[2.]+1*#[5204+20*[1]]]\n");
+    expect(DIALECT_HAAS, "G10 L2 P#1 Y1.\n",
+           "G10 L2 P#1 y[[1.]+#<_incremental>*#[5202+20*[#1]]" SUM "\n");
+    expect(DIALECT_GRBL, "G91 G10 L2 P1 X1\n", "G91 G10 L2 P1 X1\n");
+}
+
+static void test_what_displaces_all_systems_is_told(void)
+{
+    const char *text = "G10 L2 P0 displaces all work offsets, which is not supported: add it to "
+                       "those of P1 to P6";
+
+    wrong("G90 G10 L2 P0 X0 Y1.\n", text);
+    wrong("G90 G10 L2 P0 X0 Y0.\n", "");
+    expect(DIALECT_FANUC, "G90 G10 L2 P0 X0 Y0.\n", "G90                 \n");
+    expect(DIALECT_GRBL, "G10 L2 P0 X1\n", "G10 L2 P0 X1\n");
+}
+
+static void test_more_systems_are_set_where_they_are_here(void)
+{
+    expect(DIALECT_FANUC, "G90 G10 L20 P2 X1.\n", "G90 G10 L2  P8 X1.\n");
+    wrong("G90 G10 L20 P4 X1.\n", "G10 L20 sets G54.1 P1 to P3 here, and no others");
+}
+
+static void test_values_of_tools_are_those_that_r_says(void)
+{
+#define TOLD                                                                                       \
+    " sets a value of a tool by R in G90; wear, and what is added in G91, is not supported: set "  \
+    "the sum"
+
+    expect(DIALECT_FANUC, "G90 G10 L10 P1 R80.\nG10 L12 P1 R5.\n",
+           "G90 G10 L1  P1 Z80.\nG10 L1  P1 R5.\n");
+    expect(DIALECT_FANUC, "G90 G10 L11 P1 R0 M8\n", "G90               M8\n");
+    wrong("G10 L13 P1 R.1\n", "G10 L13" TOLD);
+    wrong("G91\nG10 L10 P1 R1.\n", "G10 L10" TOLD);
+    wrong("G10 L10 P1 Z1.\n", "G10 L10" TOLD);
+    wrong("G91\nG90 G10 L10 P1 R1.\n", "");
+    wrong_of(DIALECT_HAAS, "G10 L12 P1 R5.\n",
+             "G10 L12: a setting of the control says whether R is a radius or a diameter: use the "
+             "tool table");
+}
+
+static void test_variables_of_the_control_have_other_names(void)
+{
+    expect(DIALECT_FANUC, "#1=#5041+#5003 (#5041)\nG0 X#5021\n",
+           "#1=[#5420+#5422 ](#5041)\nG0 X#<_abs_x>\n");
+    expect(DIALECT_HAAS, "G#4003 F#4109 G#4214\n",
+           "G[90+#<_incremental>] F#<_feed> "
+           "G[#<_coord_system>/10]\n");
+    expect(DIALECT_FANUC, "#1=#5242+#5244\n", "#1=[[#5242" SUM "+#5244]\n");
+    expect(DIALECT_GRBL, "#1=#5041\n", "#1=#5041\n");
+    /* the same in LinuxCNC, or only kept */
+    expect(DIALECT_FANUC, "#1=#5061\n#3003=1\n#999=#100\n", "#1=#5061\n#3003=1\n#999=#100\n");
+}
+
+static void test_offsets_that_are_given_a_value_count_at_once(void)
+{
+    expect(DIALECT_FANUC, "#5241=#1+2\nN1 #5223=1.\n",
+           "G10 L2 P2 x[[#1+2]]\nG10 L2 P1 z[1.]\n|N1         \n");
+    wrong("IF [#1 EQ 1] THEN #5221=2.\n",
+          "'#5221' cannot be given a value here: G10 L2 P1 X10 on a line of its own sets G54");
+    wrong("#5201=2.\n",
+          "'#5201' cannot be given a value here: G10 L2 P1 X10 on a line of its own sets G54");
+}
+
+static void test_variables_that_are_not_known_are_told(void)
+{
+    static const char *const texts[] = {"#1=#2001",      "#2001=5.", "#1=#1000",   "#1101=1",
+                                        "#1=#[2001+#4]", "#1=#3012", "G0 X#11001", "#7001=1."};
+    static const unsigned numbers[] = {2001, 2001, 1000, 1101, 2001, 3012, 11001, 7001};
+
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        char text[120];
+
+        (void)snprintf(text, sizeof text,
+                       "'#%u' is a variable of the control that is not known here: a number has "
+                       "to stand in its place",
+                       numbers[i]);
+        wrong(texts[i], text);
+    }
+    wrong("#1=#[#2+1] #3=#[5221+20*#4]\n#2=#[100+#[#5+10]]\n", "");
+}
+
+static void test_names_are_no_operators(void)
+{
+    wrong("#1=#FORCE+1\n#2=[#<_coord>*2]\n", "");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_offsets_set_in_g91_are_added);
+    RUN_TEST(test_what_displaces_all_systems_is_told);
+    RUN_TEST(test_more_systems_are_set_where_they_are_here);
+    RUN_TEST(test_values_of_tools_are_those_that_r_says);
+    RUN_TEST(test_variables_of_the_control_have_other_names);
+    RUN_TEST(test_offsets_that_are_given_a_value_count_at_once);
+    RUN_TEST(test_variables_that_are_not_known_are_told);
+    RUN_TEST(test_names_are_no_operators);
+    return UNITY_END();
+}
