@@ -2,7 +2,8 @@
  * Holes as other controls write them, in the cycles of LinuxCNC:
  *
  *     G81 Z-5 F100                  without R, where none of the same series has one, the tool drills from where it is
- *     G83 X0 Z-30 Q5000 (a lathe)   along Z, whatever the plane of its arcs is, pecks in thousandths
+ *     G83 Z-30 Q5000                pecks in thousandths
+ *     G83 X0 Z-30 (a lathe)         along Z, whatever the plane of its arcs is
  *     G83 Z-30 R-5 (a lathe)        R may be a height or a distance: the machine file says so
  *     G81 X1 Y2 Z2 I-5 (Fagor)      Z is the height that R has here, I the bottom
  */
@@ -94,7 +95,6 @@ static void give_height(struct translator *t)
         (t->survey.lathe && !read_meaning(t, &distance) && line_find(l, 'r', 0) != NULL))
         return;
     if (t->survey.lathe) {
-        write_peck(l);
         (void)line_append(l, "G17");
         t->has_level = distance && !incremental;
     }
@@ -129,5 +129,7 @@ void holes_translate(struct translator *t)
     }
     if (t->has_level)
         write_height(l);
+    if (t->has_height && (begins || line_has_axis(l)))
+        write_peck(l);
     series_translate(t, first);
 }

@@ -109,6 +109,14 @@ static void test_names_are_no_operators(void)
     wrong("#1=#FORCE+1\n#2=[#<_coord>*2]\n", "");
 }
 
+static void test_pecks_without_a_point_are_thousandths(void)
+{
+    expect(DIALECT_FANUC, "G83 Z-9. R1. Q2000 F9\nG73 Z-9. Q99\nG83 Z-9. Q200.\nX1 Q100\n",
+           "G83 Z-9. R1. Q[2000*[0.001-0.0009*#<_imperial>]] F9\nG73 Z-9. Q99\nG83 Z-9. Q200.\n"
+           "X1 Q[100*[0.001-0.0009*#<_imperial>]]\n");
+    expect(DIALECT_MACH3, "G83 Z-9 R1 Q2000 F9\n", "G83 Z-9 R1 Q2000 F9\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -120,5 +128,6 @@ int main(void)
     RUN_TEST(test_offsets_that_are_given_a_value_count_at_once);
     RUN_TEST(test_variables_that_are_not_known_are_told);
     RUN_TEST(test_names_are_no_operators);
+    RUN_TEST(test_pecks_without_a_point_are_thousandths);
     return UNITY_END();
 }
