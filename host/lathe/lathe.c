@@ -70,7 +70,7 @@ void lathe_translate_increments(struct translator *t)
     }
 }
 
-/* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
+/* Turning: feeds per turn, and per minute after G98; T0101 that changes the tool; diameters. */
 void lathe_translate(struct translator *t)
 {
     struct line *l = &t->line;
@@ -81,7 +81,7 @@ void lathe_translate(struct translator *t)
     if (!t->survey.lathe)
         return;
     if (!t->begun && l->words > 0 && l->word[0].letter != '%' && l->word[0].letter != 'o')
-        translate_add(&t->before, "G18 G7");
+        translate_add(&t->before, t->called == NULL ? "G18 G7 G95" : "G18 G7");
     if (minute != NULL)
         (void)line_replace(l, minute, "G94");
     if (turn != NULL)

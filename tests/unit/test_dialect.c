@@ -115,7 +115,7 @@ static void test_a_rapid_beside_a_reference_holds_from_the_next_line_on(void)
 {
     expect(DIALECT_FANUC, "G1 X1\nG0 G28 G91 Z0.\nG90 X5\nX6\n",
            "G1 X1\n   G28 G91 Z0.\nG90 X5 G0\nX6\n");
-    expect(DIALECT_FANUC, "G28 U0. W0.\n", "G18 G7\n|G28 X0. Z0. G91\n|G90\n");
+    expect(DIALECT_FANUC, "G28 U0. W0.\n", "G18 G7 G95\n|G28 X0. Z0. G91\n|G90\n");
 }
 
 static void test_loops_branches_and_jumps_become_o_words(void)
@@ -156,7 +156,7 @@ static void test_dwells_in_milliseconds_become_seconds(void)
 static void test_turning_has_diameters_and_limits_of_speed(void)
 {
     expect(DIALECT_FANUC, "O1\nG50 S2000\nT0101\nG96 S200\nG99 G1 X5 F.1\n",
-           "O1\nG18 G7\nT1 M6 G43 H1\nG96 S200 D2000\nG95 G1 X5 F.1\n");
+           "O1\nG18 G7 G95\nT1 M6 G43 H1\nG96 S200 D2000\nG95 G1 X5 F.1\n");
 }
 
 static void test_printers_leave_their_way(void)
@@ -291,7 +291,7 @@ static void test_profiles_of_fanuc_become_subroutines(void)
     expect(DIALECT_FANUC,
            "G50 S9\nG71 P10 Q20 U0.4 W0.1 D2. F0.2\nN10 G0 G42 X1. F3\nG1 Z-5.\nN20 G40 X9.\n"
            "G70 P10 Q20\n",
-           "G18 G7\n"
+           "G18 G7 G95\n"
            "o93000010 sub\n|    G0     X1.   \n|G1 Z-5.\n|        X9.\n|o93000010 endsub\n"
            "|#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
            "|                          F0.2\n"
@@ -304,7 +304,7 @@ static void test_profiles_of_fanuc_become_subroutines(void)
 static void test_distances_of_cycles_can_be_whole_thousandths(void)
 {
     expect(DIALECT_FANUC, "G50 S9\nG71U1250R500\nG71P10Q20U250W0.1F.2\nN10G0X1.\nN20X9.\n",
-           "G18 G7\n            \no93000010 sub\n|   G0X1.\n|   X9.\n|o93000010 endsub\n"
+           "G18 G7 G95\n            \no93000010 sub\n|   G0X1.\n|   X9.\n|o93000010 endsub\n"
            "|#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n|                 F.2\n"
            "|G71 Q93000010 D[[ABS[250*[0.001-0.0009*#<_imperial>]]/2+ABS[0.1]+"
            "ABS[ABS[250*[0.001-0.0009*#<_imperial>]]/2-ABS[0.1]]]/2] "
@@ -315,7 +315,7 @@ static void test_distances_of_cycles_can_be_whole_thousandths(void)
 static void test_pecks_along_the_axis_of_a_lathe_become_a_loop(void)
 {
     expect(DIALECT_FANUC, "G50 S9\nG74 R0.5\nG74 Z-12. Q5000 F0.1\n",
-           "G18 G7\n        \n"
+           "G18 G7 G95\n        \n"
            "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
            "|                F0.1\n"
            "|#<_turning_at>=#<_turning_z>\n|#<_turning_way>=[1-2*[[-12.] GT #<_turning_at>]]\n"
@@ -338,8 +338,8 @@ static void test_registers_hold_what_later_lines_mean(void)
     expect(DIALECT_FANUC, "G43 H1 D[#100+#101+#102+#103+#104]\n",
            "G43 H1 D[#100+#101+#102+#103+#104]\n");
     expect(DIALECT_FANUC, "G50 S[#100+#101+#102+#103+#104]\n",
-           "G18 G7\n|G50 S[#100+#101+#102+#103+#104]\n");
-    expect(DIALECT_FANUC, "G50 S9\nG0 H90.\n", "G18 G7\nG0 H90.\n");
+           "G18 G7 G95\n|G50 S[#100+#101+#102+#103+#104]\n");
+    expect(DIALECT_FANUC, "G50 S9\nG0 H90.\n", "G18 G7 G95\nG0 H90.\n");
     expect(DIALECT_FANUC, "H8\nG43 Z5\nH9\nG49 H0\n", "  \nG43 Z5 H8\nH9 G43\nG49   \n");
     expect(DIALECT_FANUC, "T1.1 M6\nG4 X2.\n", "T1   M6\nG4 P2.000000\n");
     expect(DIALECT_FANUC, "G96 M3\nS200 F1\nS300\n", "    M3\nS200 F1 G96 \nS300\n");
@@ -380,7 +380,7 @@ static void test_what_has_no_value_is_nothing(void)
 static void test_threads_of_two_lines_become_one(void)
 {
     expect(DIALECT_FANUC, "G76 P020560 Q100 R.05\nG76 X8.5 Z-20. P1200 Q400 F1.5\n",
-           "G18 G7\n"
+           "G18 G7 G95\n"
            "#<_thread_way>=[1-2*[[8.5] LT 2*#<_x>]]\n"
            "|#<_thread_gap>=[#<_thread_way>*[[8.5]-2*#<_x>]-2*[1200*[0.001-0.0009*#<_imperial>]]]\n"
            "|o96000002 if [#<_thread_gap> LT -0.0001]\n|(abort,G76 begins below its crest)\n"

@@ -117,6 +117,16 @@ static void test_pecks_without_a_point_are_thousandths(void)
     expect(DIALECT_MACH3, "G83 Z-9 R1 Q2000 F9\n", "G83 Z-9 R1 Q2000 F9\n");
 }
 
+static void test_lathes_begin_with_feeds_per_turn(void)
+{
+    const char *text = "O5\nG50 S9\nG1 X1. F.2\nM99\n";
+
+    expect(DIALECT_FANUC, "G50 S9\nG1 X1. F.2\n", "G18 G7 G95\nG1 X1. F.2\n");
+    /* a subprogram has those of its caller */
+    TEST_ASSERT_TRUE(dialect_translate(DIALECT_FANUC, &codes, "5", text, strlen(text), &result));
+    TEST_ASSERT_NULL(strstr(result.text.bytes, "G95"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -129,5 +139,6 @@ int main(void)
     RUN_TEST(test_variables_that_are_not_known_are_told);
     RUN_TEST(test_names_are_no_operators);
     RUN_TEST(test_pecks_without_a_point_are_thousandths);
+    RUN_TEST(test_lathes_begin_with_feeds_per_turn);
     return UNITY_END();
 }

@@ -62,7 +62,7 @@ static void test_numbers_stand_behind_slashes_and_comments(void)
     expect(DIALECT_FANUC, "GOTO 1\n/N1\n", "o00000031 goto [00000002] [00]\n/  \n");
     expect(DIALECT_FANUC, "GOTO 1\n(c) (d)N1\n", "o00000031 goto [00000002] [00]\n(c) (d)  \n");
     expect(DIALECT_FANUC, "G50 S9\nG70 P1 Q2\n/2 (c)N1 X1\n(d)N2 X3\n",
-           "G18 G7\no93000001 sub\n|         X1\n|      X3\n|o93000001 endsub\n"
+           "G18 G7 G95\no93000001 sub\n|         X1\n|      X3\n|o93000001 endsub\n"
            "|#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n|G70 Q93000001\n|G0 X#<_turning_x>\n"
            "|Z#<_turning_z>\n/  (c)   X1\n(d)   X3\n");
 }

@@ -2,7 +2,7 @@
 #include "dialect_expect.h"
 
 #define LATHE  "G50 S9\n"
-#define BEGINS "G18 G7\n"
+#define BEGINS "G18 G7 G95\n"
 #define FROM   "|#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
 
 static void wrong(enum dialect dialect, const char *from, uint32_t line, const char *message)
