@@ -424,6 +424,9 @@ static void survey_line(void *translator, const char *bytes, size_t length)
 
     if (!line_read(l, bytes, length))
         return;
+    siemens_survey(&t->survey, l);
+    if (!translate_is(t, TRANSLATE_MACROS))
+        return;
     calls_survey(&t->survey, l);
     flow_survey(&t->survey, l);
     names_survey(&t->survey, l);
@@ -475,8 +478,7 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     t->source_length = length;
     t->across = 'k';
     t->absolute = is_absolute(t);
-    if (translate_is(t, TRANSLATE_MACROS))
-        each_line(bytes, length, survey_line, t);
+    each_line(bytes, length, survey_line, t);
     if (t->survey.lathe)
         t->across = 'j';
     each_line(bytes, length, translate_line, t);

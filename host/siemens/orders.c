@@ -4,7 +4,7 @@
  *     TRANS X10      G92.1, G52 X[1*[10]] it takes the place of all that was shifted before
  *     ATRANS X10     G92 X[#<_x>-[10]]    and this is added to it
  *     TRANS          G92.1
- *     DEF REAL A     #<_def_a>=[0]
+ *     DEF REAL A     #<def_a>=[0]
  *     MSG("text")    (msg,text)
  *     G500           G59.3, if all of it is 0
  *     G4 F2, G4 S3   G4 P2, G4 P[3*60/#<_rpm>]
@@ -95,15 +95,19 @@ static bool take_frame(struct scan *s, const char *name)
 
 /* ---- definitions ---- */
 
-void scan_define(struct scan *s, const char *name)
+void scan_define(struct scan *s, const char *name, char kind)
 {
     struct translator *t = s->t;
+    unsigned i = 0;
 
-    if (s->failed || scan_is_variable(s, name))
+    while (i < t->variables && strcmp(t->variable[i], name) != 0)
+        i++;
+    s->failed = s->failed || i == TRANSLATE_NAMES_MAX;
+    if (s->failed)
         return;
-    s->failed = t->variables == TRANSLATE_NAMES_MAX;
-    if (!s->failed)
-        (void)snprintf(t->variable[t->variables++], sizeof t->variable[0], "%s", name);
+    (void)snprintf(t->variable[i], sizeof t->variable[0], "%s", name);
+    t->kind[i] = kind;
+    t->variables += i == t->variables ? 1 : 0;
 }
 
 /* DEF REAL A=1, B */
@@ -113,16 +117,18 @@ static void take_definitions(struct scan *s)
     char name[NAME_MAX_];
 
     s->failed = s->failed || !scan_name(s, name);
+    const char kind = strcmp(name, "INT") == 0 ? 'i' : ' ';
+
     do {
         s->failed = s->failed || !scan_name(s, name);
-        scan_define(s, name);
+        scan_define(s, name, kind);
         if (s->failed)
             return;
         s->length = 0;
         scan_operand(s, name);
         scan_put(s, "=");
         if (scan_take(s, "="))
-            scan_brackets(s);
+            scan_given(s, kind);
         else
             scan_put(s, "[0]");
         translate_add(&t->before, "%s", s->out);
@@ -184,8 +190,54 @@ static void translate_diameter(struct translator *t)
         t->diameter = false;
 }
 
+/* With axis words of its own it is a frame of the 840D, and a system and a move of the 802D. */
+static void refuse_system_with_axes(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *w = line_find_code(l, 'g', 580);
+    bool motion;
+    bool other;
+
+    line_look_for_motion(l, &motion, &other);
+    w = w != NULL ? w : line_find_code(l, 'g', 590);
+    if (w != NULL && line_has_axis(l) && !motion)
+        translate_wrong(t, w,
+                        "'%.*s' beside axis words shifts, or selects a system and moves: write "
+                        "TRANS, or G0 or G1",
+                        (int)(w->end - w->begin), &l->text[w->begin]);
+}
+
+/*
+ * A tool that has been changed has the length of its first edge; in a program without M6 the T
+ * changes it, under a spindle that goes on turning.
+ */
+static void translate_change(struct translator *t)
+{
+    struct line *l = &t->line;
+    const struct line_word *tool = line_find(l, 't', 0);
+    const bool turret = tool != NULL && !t->survey.changes && t->called == NULL;
+    const bool none = tool != NULL && tool->is_number && tool->value == 0.0;
+    bool told = line_find_code(l, 'm', 50) != NULL;
+
+    for (unsigned code = 3; code <= 4; code++) {
+        t->turns = line_find_code(l, 'm', 10 * code) != NULL ? code : t->turns;
+        told = told || line_find_code(l, 'm', 10 * code) != NULL;
+    }
+    t->turns = line_find_code(l, 'm', 50) != NULL ? 0 : t->turns;
+    if (!turret && line_find_code(l, 'm', 60) == NULL)
+        return;
+    if (turret)
+        (void)line_append(l, "M6");
+    if (line_find_code(l, 'g', 430) == NULL && line_find_code(l, 'g', 490) == NULL)
+        (void)line_append(l, none ? "G49" : "G43");
+    if (turret && t->turns != 0 && !told)
+        (void)line_append(l, t->turns == 3 ? "M3" : "M4");
+}
+
 void siemens_codes(struct translator *t)
 {
+    refuse_system_with_axes(t);
+    translate_change(t);
     translate_dwell(&t->line);
     translate_no_offset(t);
     translate_diameter(t);
@@ -222,6 +274,11 @@ static void take_line(struct scan *s, char *name)
         (void)line_read(&s->t->line, s->out, s->length);
     if (!s->failed)
         siemens_codes(s->t);
+}
+
+void siemens_survey(struct survey *s, struct line *l)
+{
+    s->changes = s->changes || line_find_code(l, 'm', 60) != NULL;
 }
 
 void siemens_translate(struct translator *t)

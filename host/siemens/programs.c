@@ -89,14 +89,21 @@ static void take_parameters(struct scan *s)
     char name[NAME_MAX_];
 
     while (more && !s->failed) {
-        s->failed = !scan_name(s, type) || (strcmp(type, "VAR") == 0 && !scan_name(s, type)) ||
-                    !scan_name(s, name);
-        scan_define(s, name);
+        s->failed = !scan_name(s, type);
+        const bool is_var = strcmp(type, "VAR") == 0;
+
+        s->failed = s->failed || (is_var && !scan_name(s, type)) || !scan_name(s, name);
+        const bool is_whole = strcmp(type, "INT") == 0;
+
+        const char *kind = is_var ? "v" : is_whole ? "i" : " ";
+
+        scan_define(s, name, *kind);
         if (s->failed)
             return;
         s->length = 0;
         scan_operand(s, name);
-        translate_add(&t->before, "%s=#%u", s->out, ++number);
+        number++;
+        translate_add(&t->before, is_whole ? "%s=ROUND[#%u]" : "%s=#%u", s->out, number);
         if (scan_take(s, "="))
             scan_brackets(s);
         more = scan_take(s, ",");

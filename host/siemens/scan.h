@@ -47,6 +47,10 @@ void scan_single(struct scan *s);
 void scan_number(struct scan *s);
 /* A name of DEF. */
 bool scan_is_variable(const struct scan *s, const char *name);
+/* What kind of variable it is (struct translator); '\0': none. */
+char scan_kind(const struct scan *s, const char *name);
+/* A value in brackets, as a variable of this kind takes it. */
+void scan_given(struct scan *s, char kind);
 /* ( 1, , R2+3 ) as expressions, those that are left out empty; how many. */
 unsigned scan_arguments(struct scan *s, char argument[SCAN_ARGUMENTS][48]);
 /* A word that is alone in saying something; false: it is none. */
@@ -54,7 +58,7 @@ bool scan_keyword(struct scan *s, const char *name);
 /* NAME = has been passed; NAME is R12 or a variable. */
 void scan_assign(struct scan *s, const char *name);
 /* A name of DEF from here on. */
-void scan_define(struct scan *s, const char *name);
+void scan_define(struct scan *s, const char *name, char kind);
 /* N100 and NAME:, where jumps go to. False: there is none. */
 bool scan_label(struct scan *s);
 /* Nothing is left of the line itself. */

@@ -114,10 +114,16 @@ void scan_assign(struct scan *s, const char *name)
     struct translator *t = s->t;
     const size_t before = s->length;
     const bool first = strspn(s->out, " /") >= before;
+    const char kind = scan_kind(s, name);
 
+    if (kind == 'v')
+        translate_wrong(t, NULL,
+                        "'%s' is VAR: a value that the subprogram gives it does not come back, "
+                        "which is not supported: use an R parameter",
+                        name);
     scan_operand(s, name);
     scan_put(s, "=");
-    scan_brackets(s);
+    scan_given(s, kind);
     if (!s->failed)
         translate_add(first ? &t->before : &t->behind, "%s", s->out + before);
     s->length = before;
@@ -277,6 +283,10 @@ static bool take_edge(struct scan *s, const char *name)
 
     if (*end != '\0')
         return false;
+    if (edge > 1)
+        translate_wrong(s->t, NULL,
+                        "'%s': tools have one edge here: make a tool of it, and call that by T",
+                        name);
     scan_put(s, edge == 0 ? "G49" : "G43");
     return true;
 }

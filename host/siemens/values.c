@@ -43,20 +43,31 @@ void scan_bracketed(struct scan *s)
     s->failed = s->failed || !scan_take(s, ")");
 }
 
-bool scan_is_variable(const struct scan *s, const char *name)
+char scan_kind(const struct scan *s, const char *name)
 {
     const struct translator *t = s->t;
 
     for (unsigned i = 0; i < t->variables; i++) {
         if (strcmp(t->variable[i], name) == 0)
-            return true;
+            return t->kind[i];
     }
-    return false;
+    return '\0';
+}
+
+bool scan_is_variable(const struct scan *s, const char *name)
+{
+    return scan_kind(s, name) != '\0';
+}
+
+void scan_given(struct scan *s, char kind)
+{
+    scan_put(s, kind == 'i' ? "ROUND" : "");
+    scan_brackets(s);
 }
 
 static void put_variable(struct scan *s, const char *name)
 {
-    scan_put(s, "#<_def_");
+    scan_put(s, "#<def_");
     for (; *name != '\0'; name++)
         scan_put(s, "%c", line_lower(*name));
     scan_put(s, ">");

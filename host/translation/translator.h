@@ -68,6 +68,7 @@ struct survey {
     bool jumps;
     unsigned targets; /* numbers N, each once; one more than the most: there are too many */
     uint32_t target[TRANSLATE_TARGETS_MAX];
+    bool changes;            /* it has M6 */
     bool ended;              /* M30, M2 or M99 has passed */
     bool drilling, relative; /* a series of drilling cycles, and G91, are in effect */
     bool mixes;              /* a series has both G90 and G91 */
@@ -133,6 +134,7 @@ struct translator {
      */
     unsigned names, variables, blocks, nested, repeats;
     char name[TRANSLATE_NAMES_MAX][32], variable[TRANSLATE_NAMES_MAX][32];
+    char kind[TRANSLATE_NAMES_MAX]; /* of a variable: 'i' INT, 'v' VAR of a PROC, else ' ' */
     uint32_t block[TRANSLATE_BLOCKS_MAX];
     char subprogram[32];
     const char *called;    /* the text is the subprogram of this name; NULL: the program itself */

@@ -10,11 +10,11 @@ static void test_words_and_values_of_siemens(void)
            "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
     expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
     expect(DIALECT_SIEMENS, "DEF REAL TOP=2, LOW\nLOW=TOP-1\nZ=LOW\n",
-           "#<_def_top>=[2]\n|#<_def_low>=[0]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
+           "#<def_top>=[2]\n|#<def_low>=[0]\n#<def_low>=[#<def_top>-1]\nZ[#<def_low>] \n");
     expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
            "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
     expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
-           "T1 M6 \nG43 \nG49 \n G64  G53 \nG21 M2  \n");
+           "T1 M6  G43\nG43 \nG49 \n G64  G53 \nG21 M2  \n");
     expect(DIALECT_SIEMENS, "X=$P_EP[X]\nTRAORI\n", "X=$P_EP[X]\no<traori> call\n");
 }
 
@@ -38,7 +38,7 @@ static void test_subprograms_of_siemens(void)
     expect(DIALECT_SIEMENS,
            "BORE(1, ,R2+3)\nM30\nN1 PROC BORE (REAL TOP, INT N=2,VAR REAL R)\nX=TOP\n",
            "o<bore> call [[1]] [0] [[#102+3]]\nM30 \n"
-           "o<bore> sub\n|#<_def_top>=#1\n|#<_def_n>=#2\n|#<_def_r>=#3\nX[#<_def_top>] \n"
+           "o<bore> sub\n|#<def_top>=#1\n|#<def_n>=ROUND[#2]\n|#<def_r>=#3\nX[#<def_top>] \n"
            "|o<bore> endsub\n");
     expect(DIALECT_SIEMENS, "R1=80 R2=1.5 L903 P2\nL140(2)\n",
            "#101=[80]\n|#102=[1.5]\n|o<l903> call\n|o<l903> call\no<l140> call [[2]]\n");
@@ -51,7 +51,7 @@ static void test_named_tools_have_numbers_of_the_machine_file(void)
 {
     TEST_ASSERT_NULL(dialect_value_set(&codes, "TOOL_DRILL_8_5", "7"));
     expect(DIALECT_SIEMENS, "T=\"Drill 8.5\" M6\nT=\"12\"\nT=\"X\"\n",
-           "T[7] M6 \nT12 \nT#<TOOL_X> \n");
+           "T[7] M6  G43\nT12 \nT#<TOOL_X> \n");
 }
 
 static void test_orders_of_siemens(void)
@@ -78,7 +78,7 @@ static void test_functions_and_constants(void)
            "#101=[1+[FIX[ABS[7/2]]*[1-2*[[7/2] LT 0]]]*3]\n"
            "|#102=[[[#101]*[[#101] LT [2]]+[2]*[1-[[#101] LT [2]]]]]\n");
     expect(DIALECT_SIEMENS, "DEF BOOL OK=TRUE\nIF NOT OK\nENDIF\n",
-           "#<_def_ok>=[1]\no98000002 if [[#<_def_ok> EQ 0]]\no98000002 endif\n");
+           "#<def_ok>=[1]\no98000002 if [[#<def_ok> EQ 0]]\no98000002 endif\n");
 }
 
 static void test_dwells_and_no_offset(void)
@@ -133,6 +133,47 @@ static void test_what_a_line_opens_that_is_not_understood_is_passed_over(void)
            "IF $P_SIM\n|o98000001 if [0]\nX1 \no98000001 endif\n");
 }
 
+static void wrong(const char *from, const char *message)
+{
+    TEST_ASSERT_TRUE(dialect_translate(DIALECT_SIEMENS, &codes, NULL, from, strlen(from), &result));
+    TEST_ASSERT_EQUAL_STRING(message, result.wrong);
+    dialect_text_free(&result.text);
+}
+
+static void test_a_changed_tool_has_its_length(void)
+{
+    expect(DIALECT_SIEMENS, "T1\nM6\nT2 M6 D1\nM6 D0\nT0 M6\n",
+           "T1 \nM6  G43\nT2 M6 G43 \nM6 G49 \nT0 M6  G49\n");
+    /* without M6 T changes it, under a spindle that turns on */
+    expect(DIALECT_SIEMENS, "T1 D1\nM3 S9\nT2\nM5\nT3 M4\n",
+           "T1 G43  M6\nM3 S9 \nT2  M6 G43 M3\nM5 \nT3 M4  M6 G43\n");
+    wrong("T1 D2\n", "'D2': tools have one edge here: make a tool of it, and call that by T");
+}
+
+static void test_variables_belong_to_their_program_and_whole_ones_are_whole(void)
+{
+    expect(DIALECT_SIEMENS, "DEF INT N=2.7, M\nN=N/2\nDEF REAL N\nN=1\n",
+           "#<def_n>=ROUND[2.7]\n|#<def_m>=[0]\n#<def_n>=ROUND[#<def_n>/2]\n#<def_n>=[0]\n"
+           "#<def_n>=[1]\n");
+    wrong("PROC A(VAR REAL B)\nX=B\n", "");
+    wrong("PROC A(VAR REAL B)\nB=2\n",
+          "'B' is VAR: a value that the subprogram gives it does not come back, which is not "
+          "supported: use an R parameter");
+}
+
+static void test_systems_beside_axis_words_are_told(void)
+{
+    wrong("G58 X1\n", "'G58' beside axis words shifts, or selects a system and moves: write "
+                      "TRANS, or G0 or G1");
+    wrong("G0 G58 X1\nG59\nG54 X1\nG505\n", "");
+}
+
+static void test_feeds_go_with_the_kind_of_speed(void)
+{
+    expect(DIALECT_SIEMENS, "G96 S2\nG97 S5\nG961 S2\nG971 S5\nG962 S2\nG972 S5\n",
+           "G96 G95 S2  \nG97 G95 S5 \nG96 G94 S2  \nG97 G94 S5 \nG96  S2  \nG97  S5 \n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -150,5 +191,9 @@ int main(void)
     RUN_TEST(test_jumps_go_the_way_they_say);
     RUN_TEST(test_a_section_is_repeated);
     RUN_TEST(test_what_a_line_opens_that_is_not_understood_is_passed_over);
+    RUN_TEST(test_a_changed_tool_has_its_length);
+    RUN_TEST(test_variables_belong_to_their_program_and_whole_ones_are_whole);
+    RUN_TEST(test_systems_beside_axis_words_are_told);
+    RUN_TEST(test_feeds_go_with_the_kind_of_speed);
     return UNITY_END();
 }
