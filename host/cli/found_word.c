@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* In front of names of variables. */
-#define VARIABLE "_DEF_"
+#define VARIABLE "DEF_"
 
 static bool is_digit(char c)
 {

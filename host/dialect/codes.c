@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-void codes_drop(struct translator *t, struct line_word *w)
+static void drop_words(struct translator *t, struct line_word *w, const char *letters)
 {
     struct line *l = &t->line;
     unsigned i = (unsigned)(w - l->word);
@@ -16,9 +16,14 @@ void codes_drop(struct translator *t, struct line_word *w)
     for (i++;
          i < l->words && l->word[i].kind == WORD_VALUE && strchr("gm", l->word[i].letter) == NULL;
          i++) {
-        if (strchr(TRANSLATE_OWN_WORDS, l->word[i].letter) != NULL)
+        if (strchr(letters, l->word[i].letter) != NULL)
             line_blank(l, &l->word[i]);
     }
+}
+
+void codes_drop(struct translator *t, struct line_word *w)
+{
+    drop_words(t, w, TRANSLATE_OWN_WORDS);
 }
 
 /* False: nothing is left of the line. */
@@ -30,6 +35,10 @@ static bool use_difference(struct translator *t, struct line_word *w, const stru
     }
     if (row->kind != DIFFERENCE_QUIET)
         translate_note(t, w, row->text);
+    if (row->kind == DIFFERENCE_AXES) {
+        drop_words(t, w, TRANSLATE_OWN_WORDS LINE_AXES);
+        return true;
+    }
     if (row->kind != DIFFERENCE_LINE) {
         codes_drop(t, w);
         return true;

@@ -9,7 +9,8 @@
 enum difference_kind {
     /* the code, and the words right behind it that only it can use; with a warning */
     DIFFERENCE_DROP,
-    DIFFERENCE_QUIET,  /* the same without one: it changes nothing */
+    DIFFERENCE_AXES,   /* the same, and its axis words: it moves nothing */
+    DIFFERENCE_QUIET,  /* as the first without a warning: it changes nothing */
     DIFFERENCE_LINE,   /* the whole line; with a warning */
     DIFFERENCE_REPLACE /* the code is this text */
 };

@@ -111,6 +111,15 @@ static void translate_system(struct translator *t)
     }
 }
 
+/* G50 X200 Z100, with a limit or without one, says where the tool is. */
+static void translate_limit(struct line *l, struct line_word *w)
+{
+    if (line_code(w) == 500 && line_has_axis(l))
+        (void)line_replace(l, w, "G92");
+    else
+        line_blank(l, w);
+}
+
 struct line_word *registers_speed_limit(struct line *l)
 {
     struct line_word *w = line_find_code(l, 'g', 500);
@@ -139,10 +148,10 @@ void registers_translate_speed(struct translator *t)
     w = registers_speed_limit(l);
     s = line_find(l, 's', 0);
     if (w != NULL && s == NULL) {
-        line_blank(l, w);
+        translate_limit(l, w);
     } else if (w != NULL && keep(l, s, 'D', t->speed_limit, sizeof t->speed_limit)) {
-        line_blank(l, w);
         line_blank(l, s);
+        translate_limit(l, w);
     } else if (w == NULL && line_find_code(l, 'g', 960) != NULL && line_find(l, 'd', 0) == NULL) {
         (void)line_append(l, t->speed_limit);
     }

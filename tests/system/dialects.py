@@ -109,6 +109,12 @@ status, found, err = moves("table.nc")
 t.check(status == 2 and "table.nc:1:1: error: 'G254' is not supported: a part that turns with its table (Haas)\n" in err and
         "ignore" not in err, "a turning part", err)
 
+for code in ("G44 H1 Z5", "G29 X1", "G27 X0", "G331 Z-9 K1"):
+    t.write("moves.nc", f"G0 X1\n{code}\n")
+    status, found, err = moves("moves.nc")
+    t.check(status == 2 and f"moves.nc:2:1: error: '{code.split()[0]}' is not supported: " in err and "ignore" not in err,
+            "a code that moves, or shifts what is moved", err)
+
 for code in ("G54.1 P7", "G154 P5", "G114", "G129"):
     t.write("far.nc", f"(HAAS)\n{code}\nG0 X1\n")
     status, found, err = moves("far.nc", "--dialect", "haas")

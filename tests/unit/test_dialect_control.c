@@ -127,6 +127,22 @@ static void test_lathes_begin_with_feeds_per_turn(void)
     TEST_ASSERT_NULL(strstr(result.text.bytes, "G95"));
 }
 
+static void test_codes_by_other_names(void)
+{
+    expect(DIALECT_MACH3, "G31 Z-5 F9\n", "G38.3 Z-5 F9\n");
+    expect(DIALECT_HAAS, "G100 X0\nG0 X5\n", "       \nG0 X5\n");
+    expect(DIALECT_SIEMENS, "G0 G153 X0\n", "G0 G53  X0 \n");
+}
+
+static void test_axis_words_of_codes_that_move_nothing_are_no_places(void)
+{
+    expect(DIALECT_FANUC, "G0 X5\nG50.1 X0 Y0\nG22 X9. I-9. M8\nX6\n",
+           "G0 X5\n           \n             M8\nX6\n");
+    expect(DIALECT_MACH3, "G0 X5\nG50.1 X0\nG5.1 Q2 X0 Y0\n", "G0 X5\n        \n             \n");
+    expect(DIALECT_FANUC, "G50 X9. Z5. S2000\nG50 X8. Z4.\nG50 S1000\nG96 S9\n",
+           "G18 G7 G95\n|G92 X9. Z5.      \nG92 X8. Z4.\n         \nG96 S9 D1000\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -140,5 +156,7 @@ int main(void)
     RUN_TEST(test_names_are_no_operators);
     RUN_TEST(test_pecks_without_a_point_are_thousandths);
     RUN_TEST(test_lathes_begin_with_feeds_per_turn);
+    RUN_TEST(test_codes_by_other_names);
+    RUN_TEST(test_axis_words_of_codes_that_move_nothing_are_no_places);
     return UNITY_END();
 }
