@@ -5,6 +5,7 @@
 #include "cli/axis_unit.h"
 #include "session/canon.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -58,10 +59,15 @@ __attribute__((format(printf, 2, 3))) static void put(const struct convert *c, c
     va_end(arguments);
 }
 
+/* From here on takt_decimal_write puts an exponent, which controllers do not read. */
+#define EXPONENT_MIN 1e9
+
 /* Fixed places, as every controller reads them; at least one behind the point. */
 static void number_of(char text[CONVERT_NUMBER_MAX], double value, unsigned places)
 {
-    size_t length = takt_decimal_write(text, value, places);
+    size_t length = fabs(value) < EXPONENT_MIN
+                        ? takt_decimal_write(text, value, places)
+                        : (size_t)snprintf(text, CONVERT_NUMBER_MAX, "%.1f", fmin(value, 1e30));
 
     while (length > 2 && text[length - 1] == '0' && text[length - 2] != '.')
         length--;

@@ -70,7 +70,10 @@ void jumps_go_to_any(struct translator *t, const char *expression)
     translate_add(&t->behind, "(abort,GOTO: no line has this N)");
 }
 
-/* One further back takes the place of what has been found before it. */
+/*
+ * One further back takes the place of what has been found before it; where both ways are looked,
+ * what is behind the jump goes before what is in front of it.
+ */
 static bool is_better(const struct jump *j, const struct label *label, const struct label *found)
 {
     if (label->program != j->program || label->number != j->number || label->depth > j->depth)
@@ -83,7 +86,7 @@ static bool is_better(const struct jump *j, const struct label *label, const str
     case JUMP_ANYWHERE:
         break;
     }
-    return found == NULL;
+    return found == NULL || (found->line <= j->line && label->line > j->line);
 }
 
 static const struct label *find_label(const struct translator *t, const struct jump *j)

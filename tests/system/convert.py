@@ -99,4 +99,8 @@ status, out, err = t.run("convert", "tap.ngc", "--to", "grbl", "-o", "tap.out")
 t.check(status == 2 and err == "tap.ngc:2:1: error: grbl has no words for a tool change\n" and not os.path.exists("tap.out"),
         "what cannot be said", err)
 
+t.write("fast.ngc", "F1234567890\nG1 X1\nM2\n")
+status, out, err = t.run("convert", "fast.ngc", "--to", "grbl")
+t.check(status == 0 and " F1234567890.0\n" in out, "a number that is as large as programs write where there is no limit", out)
+
 t.finish()

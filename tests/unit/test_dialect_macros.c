@@ -57,6 +57,12 @@ static void test_a_jump_can_go_to_the_number_that_is_worked_out(void)
            "o91000001 while [1]\nN5\no91000001 endwhile\n");
 }
 
+static void test_a_number_is_looked_for_behind_the_jump_first(void)
+{
+    expect(DIALECT_FANUC, "N5 X1\nGOTO 5\nN5 X2\nN5 X3\n",
+           "N5 X1\no00000037 goto [00000003] [00]\nN5 X2\nN5 X3\n");
+}
+
 static void test_numbers_stand_behind_slashes_and_comments(void)
 {
     expect(DIALECT_FANUC, "GOTO 1\n/N1\n", "o00000031 goto [00000002] [00]\n/  \n");
@@ -114,6 +120,7 @@ int main(void)
     RUN_TEST(test_loops_that_do_not_match_are_told_by_their_own_names);
     RUN_TEST(test_what_stands_far_behind_an_if_is_kept);
     RUN_TEST(test_a_jump_can_go_to_the_number_that_is_worked_out);
+    RUN_TEST(test_a_number_is_looked_for_behind_the_jump_first);
     RUN_TEST(test_numbers_stand_behind_slashes_and_comments);
     RUN_TEST(test_what_one_line_becomes_is_left_out_with_it);
     RUN_TEST(test_macros_are_called_as_often_as_l_says);
