@@ -22,6 +22,37 @@ void printer_leave_macro(struct translator *t)
     (void)line_read(l, "", 0);
 }
 
+/* G0 goes at the feed in effect, as G1 does. */
+static void translate_travel(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *rapid = line_find_code(l, 'g', 0);
+
+    t->feeds = t->feeds || line_find(l, 'f', 0) != NULL;
+    if (rapid != NULL && t->feeds)
+        (void)line_replace(l, rapid, "G1");
+}
+
+/* G28 X: where an axis is then counts as at the start, whatever G92 has said of it. */
+static void translate_home(struct translator *t)
+{
+    struct line *l = &t->line;
+    bool named = false;
+
+    if (line_find_code(l, 'g', 280) == NULL)
+        return;
+    for (unsigned i = 0; i < l->words; i++) {
+        const char letter = l->word[i].letter;
+
+        if (l->word[i].kind > WORD_BARE || letter < 'x' || letter > 'z')
+            continue;
+        named = true;
+        translate_add(&t->behind, "G92 %c#<_abs_%c>", letter, letter);
+    }
+    if (!named)
+        translate_add(&t->behind, "G92.1");
+}
+
 void printer_translate(struct translator *t)
 {
     struct line *l = &t->line;
@@ -35,4 +66,6 @@ void printer_translate(struct translator *t)
     }
     if (shift != NULL && !line_has_axis(l))
         line_blank(l, shift);
+    translate_travel(t);
+    translate_home(t);
 }

@@ -300,7 +300,8 @@ static void translate_foreign(struct translator *t)
     translate_start(t);
     if (translate_is(t, TRANSLATE_MARLIN))
         printer_leave_macro(t);
-    translate_numbers(t);
+    if (!translate_is(t, TRANSLATE_MARLIN)) /* where E is the extruder, in X10E-3 too */
+        translate_numbers(t);
     if (translate_is(t, TRANSLATE_MACROS))
         variables_translate(t);
     names_begin(t);

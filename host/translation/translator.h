@@ -102,6 +102,7 @@ struct translator {
     bool begun;           /* a line with words has passed */
     bool absolute;        /* centres of arcs are, and G90.1 has to say so */
     bool globals_given;   /* those that the machine file knows are set */
+    bool feeds;           /* a printer's program has had an F */
     bool feed_given;      /* the F that the machine file declares has been put in */
     char speed_limit[24]; /* G50 S */
     char radius[24];      /* D beside G43 */

@@ -143,6 +143,19 @@ static void test_axis_words_of_codes_that_move_nothing_are_no_places(void)
            "G18 G7 G95\n|G92 X9. Z5.      \nG92 X8. Z4.\n         \nG96 S9 D1000\n");
 }
 
+static void test_what_looks_like_an_exponent_is_the_extruder_of_a_printer(void)
+{
+    expect(DIALECT_MARLIN, "G1E-3F300\nG1X10E-3Y2\n", "G1   F300\nG1X10   Y2\n");
+    expect(DIALECT_GRBL, "G1X1.5E-1Y2\n", "G1X0.150000000Y2\n");
+}
+
+static void test_printers_travel_at_their_feed_and_count_from_home(void)
+{
+    expect(DIALECT_MARLIN, "G0 X1\nG0 X2 F9\nG0 X3\nG1 X4\n", "G0 X1\nG1 X2 F9\nG1 X3\nG1 X4\n");
+    expect(DIALECT_MARLIN, "G28\n", "G28\n|G92.1\n");
+    expect(DIALECT_MARLIN, "G28 X\n", "G28 X0 G91\n|G92 x#<_abs_x>\n|G90\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -158,5 +171,7 @@ int main(void)
     RUN_TEST(test_lathes_begin_with_feeds_per_turn);
     RUN_TEST(test_codes_by_other_names);
     RUN_TEST(test_axis_words_of_codes_that_move_nothing_are_no_places);
+    RUN_TEST(test_what_looks_like_an_exponent_is_the_extruder_of_a_printer);
+    RUN_TEST(test_printers_travel_at_their_feed_and_count_from_home);
     return UNITY_END();
 }
