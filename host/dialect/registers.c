@@ -5,6 +5,7 @@
 #include "dialect/translate.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /*
  * The word's value for later lines, by the letter that it has there. False: it is too long, so that
@@ -166,9 +167,19 @@ void registers_translate_unit(struct translator *t)
         (void)line_replace(&t->line, unit, line_code(unit) == 700 ? "G20" : "G21");
 }
 
+/* G92.1 X0 Y0 takes shifts away, and moves nothing. */
+static void translate_preset(struct line *l)
+{
+    for (unsigned i = 0; i < l->words && line_find_code(l, 'g', 921) != NULL; i++) {
+        if (l->word[i].kind == WORD_VALUE && strchr(LINE_AXES, l->word[i].letter) != NULL)
+            line_blank(l, &l->word[i]);
+    }
+}
+
 /* What a control has in registers. */
 void registers_translate(struct translator *t)
 {
+    translate_preset(&t->line);
     translate_system(t);
     translate_radius(t);
     translate_length(t);

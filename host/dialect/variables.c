@@ -18,6 +18,9 @@
 /* Parameters of LinuxCNC in mm, in the units in effect. */
 #define IN_UNITS "/[1+24.4*#<_imperial>]"
 
+/* A line of the interpreter is no longer. */
+#define CALCULATION_MAX 256U
+
 #define OWN_LAST       999U /* the program's own */
 #define POSITIONS      6U
 #define SYSTEM_FIRST   5221U
@@ -186,6 +189,47 @@ static void refuse_worked_out(struct translator *t)
     }
 }
 
+/* Behind the bracket that closes the one at a place; 0: none does. */
+static size_t close_of(const struct line *l, size_t at)
+{
+    unsigned depth = 0;
+
+    for (; at < l->length; at++) {
+        depth += l->text[at] == '[' ? 1U : 0U;
+        depth -= l->text[at] == ']' ? 1U : 0U;
+        if (depth == 0)
+            return at + 1;
+    }
+    return 0;
+}
+
+/*
+ * FIX goes towards 0 and FUP away from it; those of LinuxCNC go down and up:
+ *
+ *     FIX[e]     [FIX[ABS[e]]*[1-2*[[e] LT 0]]]
+ */
+static void round_by_sign(struct line *l)
+{
+    char text[LINE_MAX_BYTES];
+
+    for (size_t at = 0; at + 4 < l->length && strchr("(;", l->text[at]) == NULL; at++) {
+        const char *name = &l->text[at];
+        const size_t end =
+            line_begins(name, "fix") || line_begins(name, "fup") ? close_of(l, at + 3) : 0;
+        const bool is_done =
+            end > 0 && line_begins(name + 4, "abs") && close_of(l, at + 7) + 1 == end;
+        struct line_word w = {.begin = (uint16_t)at, .end = (uint16_t)end};
+
+        if (end <= at + 4 || is_done)
+            continue;
+        const int length = snprintf(text, sizeof text, "[%.3s[ABS%.*s]*[1-2*[%.*s LT 0]]]", name,
+                                    (int)(end - at - 3), name + 3, (int)(end - at - 3), name + 3);
+
+        if ((size_t)length + l->length <= CALCULATION_MAX)
+            (void)line_replace(l, &w, text);
+    }
+}
+
 void variables_translate(struct translator *t)
 {
     struct line *l = &t->line;
@@ -193,6 +237,7 @@ void variables_translate(struct translator *t)
     char text[64];
 
     refuse_worked_out(t);
+    round_by_sign(l);
     for (size_t at = 0; find_next(l, at, &p); at = p.at + 1) {
         struct line_word w = {.begin = (uint16_t)p.at, .end = (uint16_t)(p.at + p.length)};
         const bool is_given = line_is_assigned(l, p.at + p.length);

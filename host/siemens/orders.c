@@ -234,8 +234,24 @@ static void translate_change(struct translator *t)
         (void)line_append(l, t->turns == 3 ? "M3" : "M4");
 }
 
+/* LIMS without G96, a D by now, holds for the next one. */
+static void keep_limit(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *d = line_find(l, 'd', 0);
+
+    if (d == NULL || line_find_code(l, 'g', 960) != NULL || line_find_code(l, 'g', 9610) != NULL ||
+        line_find_code(l, 'g', 9620) != NULL ||
+        (size_t)(d->end - d->begin) >= sizeof t->speed_limit)
+        return;
+    (void)snprintf(t->speed_limit, sizeof t->speed_limit, "%.*s", (int)(d->end - d->begin),
+                   &l->text[d->begin]);
+    line_blank(l, d);
+}
+
 void siemens_codes(struct translator *t)
 {
+    keep_limit(t);
     refuse_system_with_axes(t);
     translate_change(t);
     translate_dwell(&t->line);

@@ -138,6 +138,7 @@ static void test_axis_words_of_codes_that_move_nothing_are_no_places(void)
 {
     expect(DIALECT_FANUC, "G0 X5\nG50.1 X0 Y0\nG22 X9. I-9. M8\nX6\n",
            "G0 X5\n           \n             M8\nX6\n");
+    expect(DIALECT_FANUC, "G0 X5\nG92.1 X0 Y0\n", "G0 X5\nG92.1      \n");
     expect(DIALECT_MACH3, "G0 X5\nG50.1 X0\nG5.1 Q2 X0 Y0\n", "G0 X5\n        \n             \n");
     expect(DIALECT_FANUC, "G50 X9. Z5. S2000\nG50 X8. Z4.\nG50 S1000\nG96 S9\n",
            "G18 G7 G95\n|G92 X9. Z5.      \nG92 X8. Z4.\n         \nG96 S9 D1000\n");
@@ -154,6 +155,15 @@ static void test_printers_travel_at_their_feed_and_count_from_home(void)
     expect(DIALECT_MARLIN, "G0 X1\nG0 X2 F9\nG0 X3\nG1 X4\n", "G0 X1\nG1 X2 F9\nG1 X3\nG1 X4\n");
     expect(DIALECT_MARLIN, "G28\n", "G28\n|G92.1\n");
     expect(DIALECT_MARLIN, "G28 X\n", "G28 X0 G91\n|G92 x#<_abs_x>\n|G90\n");
+}
+
+static void test_fix_and_fup_go_by_the_sign(void)
+{
+    expect(DIALECT_FANUC, "#1=FIX[#2]\n", "#1=[FIX[ABS[#2]]*[1-2*[[#2] LT 0]]]\n");
+    expect(DIALECT_HAAS, "X[FUP[#1-[2]]]\n", "X[[FUP[ABS[#1-[2]]]*[1-2*[[#1-[2]] LT 0]]]]\n");
+    expect(DIALECT_FANUC, "#1=FIX[ABS[#2]] (FIX[1])\n#1=FIX\n#1=FIX[2\n",
+           "#1=FIX[ABS[#2]] (FIX[1])\n#1=FIX\n#1=FIX[2\n");
+    expect(DIALECT_GRBL, "#1=FIX[#2]\n", "#1=FIX[#2]\n");
 }
 
 int main(void)
@@ -173,5 +183,6 @@ int main(void)
     RUN_TEST(test_axis_words_of_codes_that_move_nothing_are_no_places);
     RUN_TEST(test_what_looks_like_an_exponent_is_the_extruder_of_a_printer);
     RUN_TEST(test_printers_travel_at_their_feed_and_count_from_home);
+    RUN_TEST(test_fix_and_fup_go_by_the_sign);
     return UNITY_END();
 }

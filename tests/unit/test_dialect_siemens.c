@@ -170,6 +170,7 @@ static void test_systems_beside_axis_words_are_told(void)
 
 static void test_feeds_go_with_the_kind_of_speed(void)
 {
+    expect(DIALECT_SIEMENS, "LIMS=900\nG96 S2\n", "       \nG96 G95 S2  D[900]\n");
     expect(DIALECT_SIEMENS, "G96 S2\nG97 S5\nG961 S2\nG971 S5\nG962 S2\nG972 S5\n",
            "G96 G95 S2  \nG97 G95 S5 \nG96 G94 S2  \nG97 G94 S5 \nG96  S2  \nG97  S5 \n");
 }
