@@ -108,7 +108,7 @@ static bool look_at_line(struct look *k)
 {
     const char *text = k->line.text;
     const char c = text[0];
-    const bool remark = (c == '/' && text[1] == '/') ||
+    const bool remark = line_is_order(&k->line) || (c == '/' && text[1] == '/') ||
                         (c == '#' && (text[1] == ' ' || contains(text + 1, 1, "a") ||
                                       (line_lower(text[1]) >= 'a' && line_lower(text[1]) <= 'z')));
 

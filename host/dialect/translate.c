@@ -26,7 +26,8 @@ static bool is_no_line(const struct line *l)
 {
     const char *text = l->text;
 
-    return (text[0] != '\0' && strchr("$?!~", text[0]) != NULL) || strncmp(text, "//", 2) == 0 ||
+    return line_is_order(l) || (text[0] != '\0' && strchr("$?!~", text[0]) != NULL) ||
+           strncmp(text, "//", 2) == 0 ||
            (text[0] == '#' &&
             (text[1] == ' ' ||
              (line_name_length(l, 1) > 0 && !line_is_assigned(l, 1 + line_name_length(l, 1)))));

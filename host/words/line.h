@@ -95,6 +95,9 @@ const char *line_checksum(const struct line *l);
 /* MSG "text", as Eding CNC has it: the text and its length. NULL: no such line. */
 const char *line_message(const struct line *l, size_t *length);
 
+/* %wait, %msg and %X0=posx: what CNCjs does itself. */
+bool line_is_order(const struct line *l);
+
 /*
  * PRINT_START BED=60, as Klipper has it: a name of three letters or more begins the line. 0: no
  * such line.

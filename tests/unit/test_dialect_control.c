@@ -166,6 +166,13 @@ static void test_fix_and_fup_go_by_the_sign(void)
     expect(DIALECT_GRBL, "#1=FIX[#2]\n", "#1=FIX[#2]\n");
 }
 
+static void test_orders_of_a_sender_do_not_end_the_program(void)
+{
+    TEST_ASSERT_EQUAL_INT(DIALECT_GRBL, guess("G0 X1\n%wait\nX2\n%X0=posx\nX3").dialect);
+    expect(DIALECT_GRBL, "%wait\nG0 X1\n%msg Hi\n%x0=posx\nX2\n", "\nG0 X1\n\n\nX2\n");
+    expect(DIALECT_FANUC, "%O12 (A=B)\n%MPF 90\n", "%\n%\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -184,5 +191,6 @@ int main(void)
     RUN_TEST(test_what_looks_like_an_exponent_is_the_extruder_of_a_printer);
     RUN_TEST(test_printers_travel_at_their_feed_and_count_from_home);
     RUN_TEST(test_fix_and_fup_go_by_the_sign);
+    RUN_TEST(test_orders_of_a_sender_do_not_end_the_program);
     return UNITY_END();
 }
