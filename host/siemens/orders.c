@@ -307,8 +307,10 @@ void siemens_translate(struct translator *t)
     found = t->line;
     if (scan_section(&s))
         return;
-    if (*s.at == '/')
+    if (*s.at == '/') {
         scan_put(&s, "%c", *s.at++);
+        s.at += scan_is_digit(*s.at) ? 1 : 0; /* a level of its own: all are skipped, or none */
+    }
     while (scan_label(&s))
         ;
     scan_skip(&s);

@@ -168,6 +168,11 @@ static void test_systems_beside_axis_words_are_told(void)
     wrong("G0 G58 X1\nG59\nG54 X1\nG505\n", "");
 }
 
+static void test_levels_of_skipped_lines_are_one(void)
+{
+    expect(DIALECT_SIEMENS, "/1 G0 X5\n/ X6\n", "/G0 X5 \n/X6 \n");
+}
+
 static void test_feeds_go_with_the_kind_of_speed(void)
 {
     expect(DIALECT_SIEMENS, "LIMS=900\nG96 S2\n", "       \nG96 G95 S2  D[900]\n");
@@ -195,6 +200,7 @@ int main(void)
     RUN_TEST(test_a_changed_tool_has_its_length);
     RUN_TEST(test_variables_belong_to_their_program_and_whole_ones_are_whole);
     RUN_TEST(test_systems_beside_axis_words_are_told);
+    RUN_TEST(test_levels_of_skipped_lines_are_one);
     RUN_TEST(test_feeds_go_with_the_kind_of_speed);
     return UNITY_END();
 }
