@@ -19,12 +19,6 @@
  */
 #define SUM_UNITS 9223372036854775808.0
 
-/*
- * Units of one block at most: with what is ahead of it (path.c) differences of positions stay
- * within 63 bits.
- */
-#define LENGTH_UNITS 2305843009213693952.0
-
 /* The bits of the linear axes, and of the rotary ones. */
 #define LINEAR ((1U << AXIS_LINEAR_COUNT) - 1U)
 #define ROTARY (((1U << AXIS_COUNT) - 1U) & ~LINEAR)

@@ -124,20 +124,6 @@ void takt_window_set(struct window *w, const struct route *r, unsigned i,
     }
 }
 
-bool takt_window_is_at(const struct window *w, const struct route *r, unsigned i,
-                       const struct window_spot *s)
-{
-    TAKT_ASSERT(i < w->count);
-    for (unsigned k = 0; k < r->slots.count; k++) {
-        const int32_t off = s->at[k] - window_x(w, k, i);
-
-        if (off < -1 || off > 1) {
-            return false;
-        }
-    }
-    return true;
-}
-
 void takt_window_sample(const struct window *w, const struct route *r, unsigned i, double p[])
 {
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -361,8 +347,9 @@ void takt_window_reach(const struct window *w, unsigned i, double *from_mm, doub
     *to_mm = w->at_mm[i] + reach;
 }
 
-float takt_window_chord_square(const struct window *w, const struct route *r, uint32_t element,
-                               const struct window_spot *from, const struct window_spot *to)
+/* Square of the distance of the start of an element from the chord between two spots, weighted. */
+static float chord_square(const struct window *w, const struct route *r, uint32_t element,
+                          const struct window_spot *from, const struct window_spot *to)
 {
     const double *corner = route_start(r, element);
     float chord[AXIS_COUNT];
@@ -395,7 +382,7 @@ static bool passes_near(const struct window *w, const struct route *r, uint32_t 
 {
     const float near_mm = NEAR_CORNER * (float)r->tolerance_mm;
 
-    return takt_window_chord_square(w, r, element, from, to) <= near_mm * near_mm;
+    return chord_square(w, r, element, from, to) <= near_mm * near_mm;
 }
 
 /*

@@ -84,9 +84,6 @@ static inline lanes window_weighted(const struct window *w, unsigned group, lane
 
 void takt_window_set(struct window *w, const struct route *r, unsigned i,
                      const struct window_spot *s);
-/* Is a sample there, but for the rounding of coordinates? */
-bool takt_window_is_at(const struct window *w, const struct route *r, unsigned i,
-                       const struct window_spot *s);
 /* A sample in mm. */
 void takt_window_sample(const struct window *w, const struct route *r, unsigned i, double p[]);
 /* The curve at a piece's fraction that has these weights, and where that is on the route. */
@@ -101,9 +98,6 @@ void takt_window_place(const struct window *w, const struct route *r, const stru
                        double p[]);
 void takt_window_nearest(const struct window *w, const struct route *r, const double p[],
                          struct window_spot *s);
-/* Square of the distance of the start of an element from the chord between two spots, weighted. */
-float takt_window_chord_square(const struct window *w, const struct route *r, uint32_t element,
-                               const struct window_spot *from, const struct window_spot *to);
 /* The curve beside every sample: its place on the route anew. */
 void takt_window_locate(struct window *w, const struct route *r);
 
