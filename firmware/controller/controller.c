@@ -196,7 +196,7 @@ static void follow_angle(struct controller *c, const struct motion_operator *ask
         &c->sync, &c->motion, asked, c->outputs.spindle_speed_rpm, &c->record);
 
     if (result == SPINDLE_SYNC_FAILED) {
-        controller_fail(c, takt_spindle_sync_get_alarm(&c->sync));
+        controller_fail(c, &c->sync.alarm);
     }
     c->has_record = result == SPINDLE_SYNC_CYCLE;
 }

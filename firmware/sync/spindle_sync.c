@@ -49,31 +49,20 @@ void takt_spindle_sync_restart(struct spindle_sync *l)
     l->next_block = UINT32_MAX;
 }
 
-const struct diagnostic *takt_spindle_sync_get_alarm(const struct spindle_sync *l)
-{
-    return &l->alarm;
-}
-
 static void command(struct spindle_sync *l, double rpm)
 {
     l->commands = true;
     l->command_rpm = rpm;
 }
 
-/* For the spindle, in the direction it was commanded: rev, rev/s. */
-struct lock_view {
-    double rev;
-    double speed;
-    double acceleration;
-};
-
-static struct lock_view view(const struct spindle_sync *l, double cycles)
+/* For the spindle, in the direction it was commanded: rev, rev/s, rev/s2. */
+static struct angle_ahead view(const struct spindle_sync *l, double cycles)
 {
     const struct angle_ahead ahead = takt_angle_look_ahead(&l->angle, cycles);
     const double rate = l->sense / l->config.cycle_s;
 
-    return (struct lock_view){l->sense * ahead.rev, rate * ahead.speed,
-                              rate * ahead.acceleration / l->config.cycle_s};
+    return (struct angle_ahead){l->sense * ahead.rev, rate * ahead.speed,
+                                rate * ahead.acceleration / l->config.cycle_s};
 }
 
 /* Axes and spindle stop, and the program ends when the axes stand. */
@@ -208,7 +197,7 @@ static double lead_in_speed(const struct spindle_sync *l, double now_rev_s)
 
 static void start(struct spindle_sync *l)
 {
-    const struct lock_view now = view(l, l->config.ahead_cycles);
+    const struct angle_ahead now = view(l, l->config.ahead_cycles);
 
     takt_chain_extend(&l->chain);
     l->lead_in.pitch_mm = l->at.pitch_mm;
@@ -258,8 +247,8 @@ static struct lead_in_place place_at(const struct spindle_sync *l, double rev)
 static struct follower_target target_of(const struct spindle_sync *l)
 {
     const double before = l->config.ahead_cycles - 1.0;
-    const struct lock_view now = view(l, before);
-    const struct lock_view middle = view(l, before + 0.5);
+    const struct angle_ahead now = view(l, before);
+    const struct angle_ahead middle = view(l, before + 0.5);
     const struct lead_in_place p = place_at(l, now.rev);
     const struct lead_in_place q = place_at(l, middle.rev);
     const double w = middle.speed;
@@ -287,7 +276,7 @@ static double tolerance_of(const struct spindle_sync *l)
 }
 
 /* Does it turn as it should? Where it turns back it may stand for a while. */
-static bool has_stopped(struct spindle_sync *l, const struct lock_view *now)
+static bool has_stopped(struct spindle_sync *l, const struct angle_ahead *now)
 {
     const double rpm = now->speed * SECONDS_PER_MINUTE;
 
@@ -303,7 +292,7 @@ static bool has_stopped(struct spindle_sync *l, const struct lock_view *now)
 
 static void watch(struct spindle_sync *l)
 {
-    const struct lock_view now = view(l, 0.0);
+    const struct angle_ahead now = view(l, 0.0);
     const double lag_mm = maths_abs(lag_of(l));
     const double v = l->ahead.pitch_mm * maths_abs(now.speed);
 
@@ -347,7 +336,7 @@ static void pass_blocks(struct spindle_sync *l, struct motion *m)
 /* The spindle's part, and the axes' turning round with it. */
 static void follow_tap(struct spindle_sync *l, struct motion *m)
 {
-    const struct lock_view now = view(l, 0.0);
+    const struct angle_ahead now = view(l, 0.0);
     const double left = (l->chain.end_mm - place_at(l, now.rev).x) / l->at.pitch_mm;
 
     command(l, l->sense * SECONDS_PER_MINUTE * takt_tap_command(&l->tap, left, now.speed));

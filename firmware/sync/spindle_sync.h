@@ -67,8 +67,7 @@ struct spindle_sync {
 
 enum spindle_sync_result {
     SPINDLE_SYNC_CYCLE, /* the record holds this cycle */
-    /* the axes stand, and takt_spindle_sync_get_alarm says why: no cycle was made */
-    SPINDLE_SYNC_FAILED
+    SPINDLE_SYNC_FAILED /* the axes stand, and alarm says why: no cycle was made */
 };
 
 void takt_spindle_sync_init(struct spindle_sync *l, const struct spindle_sync_config *config);
@@ -104,7 +103,5 @@ static inline bool spindle_sync_get_command(const struct spindle_sync *l, double
     }
     return l->commands;
 }
-
-const struct diagnostic *takt_spindle_sync_get_alarm(const struct spindle_sync *l);
 
 #endif

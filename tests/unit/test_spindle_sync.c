@@ -36,7 +36,7 @@ static void run_to_the_end(void)
 static void check_completed(void)
 {
     run_to_the_end();
-    TEST_ASSERT_EQUAL(TAKT_OK, takt_spindle_sync_get_alarm(&bench.sync)->code);
+    TEST_ASSERT_EQUAL(TAKT_OK, bench.sync.alarm.code);
     TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
 }
 
@@ -44,8 +44,8 @@ static void check_alarm(enum takt_error code)
 {
     run_to_the_end();
     TEST_ASSERT_EQUAL(SPINDLE_SYNC_FAILED, bench.locked);
-    TEST_ASSERT_EQUAL(code, takt_spindle_sync_get_alarm(&bench.sync)->code);
-    TEST_ASSERT_EQUAL_UINT32(2, takt_spindle_sync_get_alarm(&bench.sync)->line);
+    TEST_ASSERT_EQUAL(code, bench.sync.alarm.code);
+    TEST_ASSERT_EQUAL_UINT32(2, bench.sync.alarm.line);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bench.command_rpm);
 }
 
@@ -263,7 +263,7 @@ static void check_tap(double rpm, double pitch_mm, double ratio)
             TEST_ASSERT_TRUE(maths_abs(bench_off_mm(&bench)) < 0.05);
         }
     }
-    TEST_ASSERT_EQUAL(TAKT_OK, takt_spindle_sync_get_alarm(&bench.sync)->code);
+    TEST_ASSERT_EQUAL(TAKT_OK, bench.sync.alarm.code);
     TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
     TEST_ASSERT_TRUE(deepest >= -15.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.06 * pitch_mm, -15.0, deepest);
@@ -346,8 +346,8 @@ static void test_a_pitch_and_speed_that_an_axis_cannot_do_are_an_alarm_before_an
     set_thread(600, 1.5);
     bench_start(&bench);
     check_alarm(TAKT_ERROR_THREAD_FAST);
-    TEST_ASSERT_DOUBLE_WITHIN(0.5, 15.0, takt_spindle_sync_get_alarm(&bench.sync)->value);
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, 14.0, takt_spindle_sync_get_alarm(&bench.sync)->limit);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 15.0, bench.sync.alarm.value);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 14.0, bench.sync.alarm.limit);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bench.point.at[AXIS_Z]);
 }
 
@@ -392,8 +392,7 @@ static void test_a_spindle_that_jerks_away_from_the_axes_is_an_alarm(void)
     come_to_the_middle();
     bench.spindle.locked = true;
     check_alarm(TAKT_ERROR_THREAD_LAG);
-    TEST_ASSERT_TRUE(takt_spindle_sync_get_alarm(&bench.sync)->value >
-                     takt_spindle_sync_get_alarm(&bench.sync)->limit);
+    TEST_ASSERT_TRUE(bench.sync.alarm.value > bench.sync.alarm.limit);
     TEST_ASSERT_TRUE(bench.point.at[AXIS_Z] > -21.0);
 }
 
