@@ -23,9 +23,6 @@
 
 #include <stddef.h>
 
-/* Rounding of ceilings and accelerations. */
-#define SLACK 1e-9
-
 /* -- the lowest ceiling from the setpoint to the trapezoidal reference -- */
 
 static struct reference_low *low_at(struct reference_place *p, uint32_t i)
@@ -149,14 +146,12 @@ static bool can_follow(const struct reference *l, const struct ceiling *c, uint3
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
-static bool is_no_lower(const struct reference *l, const struct ceiling *c, uint32_t k)
+static bool is_no_lower(const struct ceiling *c, uint32_t k)
 {
     const struct ceiling_piece *had = &c->piece[k - 1];
     const struct ceiling_piece *p = &c->piece[k];
-    const double feed = ceiling_feed(c, p->feed_mm_s) * (1.0 + SLACK);
-    const bool kept = l->feed <= feed && l->since_minus >= l->window;
 
-    return (had->feed_mm_s <= p->feed_mm_s || kept) && p->acceleration >= had->acceleration;
+    return had->feed_mm_s <= p->feed_mm_s && p->acceleration >= had->acceleration;
 }
 
 /*
@@ -181,7 +176,7 @@ static bool may_enter(const struct reference *l, const struct ceiling *c, uint32
         return true;
     }
     return !halts_before(l, c, k, start) &&
-           (!reference_is_beyond(start, l->known) || is_no_lower(l, c, k));
+           (!reference_is_beyond(start, l->known) || is_no_lower(c, k));
 }
 
 static uint64_t nearer(const struct reference *l, uint64_t one, uint64_t other)
