@@ -122,11 +122,6 @@ double takt_block_limit(const struct block *b, enum governor *governor)
     return c.feed_mm_s;
 }
 
-enum governor takt_block_governor(const struct block *b, double program_mm_s)
-{
-    return block_ceiling(b, b->jerk_budget, program_mm_s).governor;
-}
-
 /*
  * Limits of one axis that moves straight along the path, or, beside an arc of two radii, nearly so:
  * with u = second v^2 / A and w = (third v^3 + 3 second v a) / J it keeps u <= SPIRAL_PART and both

@@ -111,9 +111,6 @@ double takt_block_top_feed(const struct block *b);
  */
 double takt_block_limit(const struct block *b, enum governor *governor);
 
-/* What governs a feed ceiling of program_mm_s (programmed feed with the override) on this block. */
-enum governor takt_block_governor(const struct block *b, double program_mm_s);
-
 static inline bool block_is_motion(const struct block *b)
 {
     return move_is_motion(&b->move);

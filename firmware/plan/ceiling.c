@@ -134,7 +134,7 @@ static uint32_t promise_window(struct builder *s, uint32_t index)
     const struct span_window window = find_window(s, index);
     TAKT_ASSERT(window.cycles <= takt_ramp_profile_cycles_max(s->path->limits.profile));
 
-    takt_path_promise(s->path, index, window.cycles, window.known);
+    takt_ring_promise(&s->path->ring, index, window.cycles, window.known);
     return window.cycles;
 }
 

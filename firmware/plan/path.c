@@ -120,12 +120,6 @@ void takt_path_read_move(const struct path *p, uint32_t index, struct move *move
     takt_ring_read_move(&p->ring, index, move);
 }
 
-void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known)
-{
-    TAKT_ASSERT(is_pushed(p, index) && cycles <= takt_ramp_profile_cycles_max(p->limits.profile));
-    takt_ring_promise(&p->ring, index, cycles, known);
-}
-
 /* Nothing joins the newest block: it ends at rest. */
 static void close_newest(struct path *p)
 {

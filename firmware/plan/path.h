@@ -172,11 +172,6 @@ static inline const struct block *path_first(struct path *p)
 {
     return path_read(p, p->first);
 }
-/*
- * Background: the averaging window that a span beginning with this block was planned with; known:
- * to its end.
- */
-void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known);
 /* The oldest block has been passed. */
 void takt_path_pass(struct path *p);
 

@@ -50,8 +50,7 @@ struct span {
     double cycle_s;
     enum ramp_profile profile;
     double feed_start;
-    double feed_end; /* 0: it rests there */
-    bool known;      /* the parts reach to its end */
+    double feed_end; /* 0: it rests there; below 0: the parts do not reach to its end */
     unsigned count;
     struct part part[PARTS_MAX];
 };
@@ -88,6 +87,11 @@ bool takt_span_lands(const struct path *path, uint32_t index)
 }
 
 /* -- the parts of a span -- */
+
+static bool is_known(const struct span *s)
+{
+    return s->feed_end >= 0.0;
+}
 
 /* False: there is no room for one more. */
 static bool add_block(struct span *s, const struct path *path, uint32_t index,
@@ -126,15 +130,16 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
     const struct ceiling_request asked = {
         .feed_ratio = 1.0, .rapid_ratio = 1.0, .spindle_rev_s = request->spindle_rev_s};
 
-    for (; !s->known; index++) {
+    for (; !is_known(s); index++) {
         const struct path_block *b = path_at(path, index);
 
         if ((s->count > 0 && index == path->closed) || !b->motion ||
             !add_block(s, path, index, &asked) || index == path->closed) {
             return;
         }
-        s->known = takt_span_stops(path, index) || takt_span_lands(path, index);
-        s->feed_end = (double)b->feed_junction_mm_s * s->cycle_s;
+        if (takt_span_stops(path, index) || takt_span_lands(path, index)) {
+            s->feed_end = (double)b->feed_junction_mm_s * s->cycle_s;
+        }
     }
 }
 
@@ -323,7 +328,7 @@ static uint32_t longest_box(const struct span *s)
         cycles = maths_max(cycles, maths_min(p->a / p->j, maths_sqrt(p->feed / (w * p->j))));
         j = maths_min(j, p->j);
     }
-    if (s->known) {
+    if (is_known(s)) {
         const double length_mm = s->part[s->count - 1].end_mm;
 
         cycles = maths_min(cycles, takt_maths_cbrt(length_mm / (2.0 * j * w * w)));
@@ -342,7 +347,7 @@ static uint32_t best_box(const struct span *s)
     static const double shorter[] = {0.85, 0.7, 0.55, 0.4, 0.25};
     const uint32_t longest = longest_box(s);
 
-    if (!s->known || (s->count == 1 && s->feed_end == 0.0 && s->feed_start == 0.0)) {
+    if (!is_known(s) || (s->count == 1 && s->feed_end == 0.0 && s->feed_start == 0.0)) {
         return longest;
     }
     double least = predict(s, longest);
@@ -364,11 +369,12 @@ static uint32_t best_box(const struct span *s)
 struct span_window takt_span_window(const struct path *path, const struct ceiling_request *request,
                                     uint32_t index)
 {
-    struct span s = {.cycle_s = path->limits.cycle_s, .profile = path->limits.profile};
+    struct span s = {
+        .cycle_s = path->limits.cycle_s, .profile = path->limits.profile, .feed_end = -1.0};
 
     survey(&s, path, request, index);
     TAKT_ASSERT(s.count > 0);
     s.feed_start = maths_min(feed_at_start(path, request, index), s.part[0].feed);
     s.feed_end = maths_min(s.feed_end, s.part[s.count - 1].feed);
-    return (struct span_window){best_box(&s), s.known};
+    return (struct span_window){best_box(&s), is_known(&s)};
 }

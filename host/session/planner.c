@@ -131,7 +131,8 @@ static enum governor governor_of(const struct path *path, uint32_t index,
 
     if (planned->path_feed_mm_s < feed_mm_s * (1 - 1e-6))
         return GOVERNOR_RAMP;
-    return takt_block_governor(planned->block, planned->block->feed_program_mm_s);
+    return planned->block->feed_cap_mm_s < planned->block->feed_program_mm_s ? planned->block->cap
+                                                                             : GOVERNOR_PROGRAM;
 }
 
 static double path_feed(const struct planner *p)
