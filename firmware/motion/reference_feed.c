@@ -327,21 +327,18 @@ static double landing_reach(const struct reference *l)
     return l->feed * (0.5 * l->feed / a + 2.0 * l->window + LANDING_CYCLES);
 }
 
-/*
- * Does anything before the junction ask for less than the present feed? highest: at the highest
- * overrides.
- */
-static bool is_way_free(const struct reference *l, bool highest)
+/* Does nothing before the junction ask for less than the present feed? */
+static bool is_way_free(const struct reference *l)
 {
     const struct ceiling_piece *p = reference_piece(l, l->here.piece);
 
     if (l->here.piece + 1 >= p->landing) {
         return true;
     }
-    while (!(highest ? p->lowest_max : p->lowest)) {
+    while (!p->lowest) {
         p++;
     }
-    const double feed = reference_feed(l, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
+    const double feed = reference_feed(l, p->end_feed_mm_s);
 
     return maths_square(feed) >= maths_square(l->feed) * (1.0 - REFERENCE_FEED_SQUARED_SLACK);
 }
@@ -354,35 +351,18 @@ static double braked_feed(const struct reference *l, const struct reference_brak
 
 /* Could the junction still be landed on when this cycle does nothing else but brake? */
 static bool can_land_after(const struct reference *l, const struct reference_brake *b,
-                           double gap_mm, double feed_max)
+                           double gap_mm)
 {
     const double feed = braked_feed(l, b);
     struct landing_run later;
 
-    return landing_from(l, gap_mm - 0.5 * (l->feed + feed), feed, feed_max, &later);
+    return landing_from(l, gap_mm - 0.5 * (l->feed + feed), feed, l->landing_feed, &later);
 }
 
 /* Braking from now on, does the trapezoidal reference come to rest before the junction? */
 static bool can_rest_before(const struct reference *l, double gap_mm)
 {
     return l->feed * l->feed <= 2.0 * stop_acceleration(l) * gap_mm;
-}
-
-/*
- * Can it be landed in this cycle, and not a cycle later? Where the feed was lowered too late for
- * the junction's, up to the highest that the axes can do there.
- */
-static bool must_land(const struct reference *l, const struct reference_brake *b, double gap_mm,
-                      struct landing_run *run)
-{
-    const double highest =
-        reference_feed(l, reference_piece(l, reference_landing(l))->end_feed_max_mm_s);
-
-    if (landing_from(l, gap_mm, l->feed, l->landing_feed, run) && is_way_free(l, false)) {
-        return true;
-    }
-    return landing_from(l, gap_mm, l->feed, highest, run) &&
-           !can_land_after(l, b, gap_mm, highest) && is_way_free(l, true);
 }
 
 /* A junction that cannot be landed on any more, nor come down to by the ceiling, is a stop. */
@@ -403,14 +383,17 @@ void takt_reference_consider_landing(struct reference *l, bool hold, struct refe
     }
     const double gap_mm = landing_gap(l);
 
-    if (gap_mm > landing_reach(l) || can_land_after(l, b, gap_mm, l->landing_feed)) {
+    if (gap_mm > landing_reach(l) || can_land_after(l, b, gap_mm)) {
         return;
     }
     l->run = (struct landing_run){.start = l->at, .junction = l->junction};
     if (!hold || !can_rest_before(l, gap_mm)) {
-        l->run.phase = must_land(l, b, gap_mm, &l->run) ? LANDING_ACTIVE : LANDING_NONE;
+        const bool lands =
+            landing_from(l, gap_mm, l->feed, l->landing_feed, &l->run) && is_way_free(l);
+
+        l->run.phase = lands ? LANDING_ACTIVE : LANDING_NONE;
     }
-    if (l->run.phase != LANDING_ACTIVE && (hold || (must_stop(l) && is_way_free(l, false)))) {
+    if (l->run.phase != LANDING_ACTIVE && (hold || (must_stop(l) && is_way_free(l)))) {
         brake_to_rest(l, l->junction, stop_acceleration(l), b);
     }
 }

@@ -70,8 +70,7 @@ struct ceiling_piece {
         landing : 9;    /* first landed junction in or after it; CEILING_NONE: a stop comes first */
     unsigned opens : 1; /* what was not there before begins: a block, or the way to the junction */
     unsigned end : 2;   /* enum ceiling_end */
-    unsigned lowest : 1;     /* no end_feed is lower from here to the last but one before landing */
-    unsigned lowest_max : 1; /* likewise end_feed_max */
+    unsigned lowest : 1; /* no end_feed is lower from here to the last but one before landing */
 };
 
 struct path;

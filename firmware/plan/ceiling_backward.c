@@ -121,19 +121,16 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum ramp_profile profile,
  * Between a piece and the junction that the span ends with: the pieces that ask for no more than
  * any behind them.
  */
-static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *low_max_mm_s)
+static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];
 
     if (p->landing == CEILING_NONE || k + 1U >= p->landing) {
         *low_mm_s = (float)MATHS_INFINITY;
-        *low_max_mm_s = (float)MATHS_INFINITY;
         return;
     }
     p->lowest = p->end_feed_mm_s <= *low_mm_s;
-    p->lowest_max = p->end_feed_max_mm_s <= *low_max_mm_s;
     *low_mm_s = p->lowest ? p->end_feed_mm_s : *low_mm_s;
-    *low_max_mm_s = p->lowest_max ? p->end_feed_max_mm_s : *low_max_mm_s;
 }
 
 void takt_ceiling_plan_backward(struct ceiling *c, enum ramp_profile profile)
@@ -141,7 +138,6 @@ void takt_ceiling_plan_backward(struct ceiling *c, enum ramp_profile profile)
     float feed_mm_s = 0.0F;
     float max_mm_s = 0.0F;
     float low_mm_s = 0.0F;
-    float low_max_mm_s = 0.0F;
     unsigned landing = CEILING_NONE;
     bool open = true;
 
@@ -155,6 +151,6 @@ void takt_ceiling_plan_backward(struct ceiling *c, enum ramp_profile profile)
         c->open_from = open ? k : c->open_from;
         p->landing = landing & CEILING_NONE;
         plan_piece(c, k, profile, &feed_mm_s, &max_mm_s);
-        note_lowest(c, k, &low_mm_s, &low_max_mm_s);
+        note_lowest(c, k, &low_mm_s);
     }
 }
