@@ -8,6 +8,8 @@
 #ifndef TAKT_BASE_POINT_H
 #define TAKT_BASE_POINT_H
 
+#include "base/maths.h"
+
 #include <stdbool.h>
 
 enum axis { AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C, AXIS_COUNT };
@@ -29,6 +31,17 @@ static inline bool point_is_same(const struct point *a, const struct point *b)
         }
     }
     return true;
+}
+
+/* |a - b| over the first axes. */
+static inline double point_distance(const struct point *a, const struct point *b, int axes)
+{
+    double square = 0.0;
+
+    for (int i = 0; i < axes; i++) {
+        square += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
+    }
+    return maths_sqrt(square);
 }
 
 #endif

@@ -97,16 +97,6 @@ static void begin_block(struct interpolator *i, const struct curve *curve, uint3
     }
 }
 
-static double distance(const struct point *a, const struct point *b)
-{
-    double sum = 0.0;
-
-    for (int n = 0; n < AXIS_COUNT; n++) {
-        sum += (a->at[n] - b->at[n]) * (a->at[n] - b->at[n]);
-    }
-    return maths_sqrt(sum);
-}
-
 static void raise_to(double *largest, double value)
 {
     *largest = maths_max(*largest, value);
@@ -165,7 +155,7 @@ static void integrate_to(struct interpolator *i, double part, struct point *cmd)
     for (int n = 0; n < AXIS_COUNT; n++) {
         cmd->at[n] = i->curve.start.at[n] + done.at[n];
     }
-    raise_to(&i->errors.along_mm, distance(cmd, &exact));
+    raise_to(&i->errors.along_mm, point_distance(cmd, &exact, AXIS_COUNT));
     raise_to(&i->errors.along_bound_mm, integrate_bound(i));
     raise_to(&i->errors.loss_ulp, i->integrate.loss_ulp);
 }
@@ -219,7 +209,7 @@ static void interpolate(struct interpolator *i, bool landed, struct point *cmd)
     }
     i->part = part;
     if (landed) {
-        raise_to(&i->errors.landing_mm, distance(cmd, &exact));
+        raise_to(&i->errors.landing_mm, point_distance(cmd, &exact, AXIS_COUNT));
         *cmd = exact;
         i->active = false;
     }

@@ -65,17 +65,6 @@ static void measure_at(const struct block *b, double at_mm, struct point *t, str
     }
 }
 
-/* |a - b| over the first axes. */
-static double apart(const struct point *a, const struct point *b, int axes)
-{
-    double square = 0.0;
-
-    for (int i = 0; i < axes; i++) {
-        square += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
-    }
-    return maths_sqrt(square);
-}
-
 /* What a block's motion may leave its path by; infinite: it is exact. */
 static double tolerance_of(const struct block *b)
 {
@@ -121,14 +110,15 @@ static void junction_measure(const struct block *before, const struct block *aft
     measure_at(before, before->curve.length_mm, &t0, &k0);
     measure_at(after, 0.0, &t1, &k1);
     static const struct point straight;
-    const double curvature =
-        maths_max(apart(&k0, &straight, AXIS_COUNT), apart(&k1, &straight, AXIS_COUNT));
+    const double curvature = maths_max(point_distance(&k0, &straight, AXIS_COUNT),
+                                       point_distance(&k1, &straight, AXIS_COUNT));
     const double tolerance_mm = maths_min(tolerance_of(before), tolerance_of(after));
 
-    *steps = (struct junction_steps){
-        .chord =
-            nearness_of(apart(&t0, &t1, AXIS_LINEAR_COUNT), 0.0, limits->chord_error_max_mm, cycle),
-        .tolerance = nearness_of(apart(&t0, &t1, AXIS_COUNT), curvature, tolerance_mm, cycle)};
+    *steps =
+        (struct junction_steps){.chord = nearness_of(point_distance(&t0, &t1, AXIS_LINEAR_COUNT),
+                                                     0.0, limits->chord_error_max_mm, cycle),
+                                .tolerance = nearness_of(point_distance(&t0, &t1, AXIS_COUNT),
+                                                         curvature, tolerance_mm, cycle)};
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
             const double d = maths_abs(t1.at[i] - t0.at[i]);

@@ -359,16 +359,6 @@ static bool pass_blocks(struct replay *r, struct motion *m, bool ended)
     return true;
 }
 
-static double distance(const struct point *a, const struct point *b)
-{
-    double sum = 0.0;
-
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        sum += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
-    }
-    return maths_sqrt(sum);
-}
-
 /*
  * All blocks have been passed but the last one, and it ends where the curve does, but for half a
  * quantum of each axis.
@@ -379,7 +369,8 @@ static bool ends_well(const struct replay *r, const struct motion *m)
 
     point_at(r, &at);
     return r->blocks + 1 == r->section.blocks &&
-           distance(&at, &path_first(m->path)->curve.end) <= START_MAX_MM + r->quantum_mm;
+           point_distance(&at, &path_first(m->path)->curve.end, AXIS_LINEAR_COUNT) <=
+               START_MAX_MM + r->quantum_mm;
 }
 
 static void end_section(struct replay *r, struct motion *m, struct point *at)
@@ -418,7 +409,8 @@ static void drive(struct replay *r, struct motion *m, double rate, bool single_b
         takt_rate_set(&r->rate, 0.0);
         r->waits = true;
     }
-    takt_handover_add_cycle(m, &at, distance(&before, &at) / m->cycle_s, ended, record);
+    takt_handover_add_cycle(m, &at, point_distance(&before, &at, AXIS_LINEAR_COUNT) / m->cycle_s,
+                            ended, record);
     record->override_percent = r->rate.now * (double)r->intake->header.ceiling_percent;
     if (ended && r->alarm.code == TAKT_OK) {
         takt_handover_end(m);
