@@ -289,13 +289,14 @@ static void measure(struct tube_verifier *t, const struct point *p, struct neare
 static void settle_corner(struct tube_verifier *t)
 {
     const struct tube_piece *piece = tube_path_at(&t->path, 0);
-    const struct point end = tube_segment_end(&piece->segment);
-    const double corner_mm =
-        maths_min(piece->corner_mm, verifier_distance(&t->last, &end)); /* if nothing came to it */
-    double tolerance_mm = allowed_mm(t, piece);
+    double tolerance_mm = allowed_mm(t, piece), corner_mm;
+    struct point end;
 
     if (!piece->ends || piece->motion->turning_mm > 0)
         return;
+    end = tube_segment_end(&piece->segment);
+    corner_mm =
+        maths_min(piece->corner_mm, verifier_distance(&t->last, &end)); /* if nothing came to it */
     if (t->path.count > 1)
         tolerance_mm = maths_min(tolerance_mm, allowed_mm(t, tube_path_at(&t->path, 1)));
     if (piece->motion->rounded) {
