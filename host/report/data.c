@@ -8,28 +8,39 @@
 
 /* ---- columns of numbers ---- */
 
-/* RFC 4648: three bytes become four characters; the rest waits for the next byte. */
+/* RFC 4648: three bytes become four characters. They are collected first, and written at once. */
+#define BASE64_BYTES 3072 /* a multiple of three */
+
 struct base64 {
     FILE *file;
-    uint32_t bits;
-    unsigned bytes; /* waiting: 0 to 2 */
+    unsigned count;
+    uint8_t byte[BASE64_BYTES];
 };
 
-static void base64_write_group(struct base64 *b, unsigned characters)
+/* The last three are filled up with zeros; of each byte that is missing one character is =. */
+static void base64_finish(struct base64 *b)
 {
     static const char alphabet[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (unsigned i = 0; i < 4; i++)
-        (void)fputc(i < characters ? alphabet[b->bits >> (18 - 6 * i) & 63u] : '=', b->file);
-    b->bits = 0;
-    b->bytes = 0;
+    const unsigned missing = (BASE64_BYTES - b->count) % 3;
+    char text[BASE64_BYTES / 3 * 4], *end = text;
+    memset(b->byte + b->count, 0, missing);
+    for (const uint8_t *byte = b->byte; byte < b->byte + b->count; byte += 3) {
+        *end++ = alphabet[byte[0] >> 2];
+        *end++ = alphabet[(byte[0] << 4 | byte[1] >> 4) & 63];
+        *end++ = alphabet[(byte[1] << 2 | byte[2] >> 6) & 63];
+        *end++ = alphabet[byte[2] & 63];
+    }
+    memset(end - missing, '=', missing);
+    (void)fwrite(text, 1, (size_t)(end - text), b->file);
+    b->count = 0;
 }
 
 static void base64_add_byte(struct base64 *b, unsigned byte)
 {
-    b->bits |= (uint32_t)byte << (16 - 8 * b->bytes);
-    if (++b->bytes == 3)
-        base64_write_group(b, 4);
+    b->byte[b->count++] = (uint8_t)byte;
+    if (b->count == BASE64_BYTES)
+        base64_finish(b);
 }
 
 static void base64_add_u32(struct base64 *b, uint32_t value)
@@ -43,12 +54,6 @@ static void base64_add_float(struct base64 *b, float value)
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     base64_add_u32(b, bits);
-}
-
-static void base64_finish(struct base64 *b)
-{
-    if (b->bytes > 0)
-        base64_write_group(b, b->bytes + 1);
 }
 
 /* ---- series over time ---- */

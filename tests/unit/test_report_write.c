@@ -87,6 +87,47 @@ static void test_equal_runs_make_equal_bytes(void)
     free(text[1]);
 }
 
+/* What is there between the quotes of a column of the page, in bytes; the caller frees it. */
+static uint8_t *decode_column(const char *text, const char *name, size_t *count)
+{
+    static const char alphabet[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const char *column = strstr(text, name) + strlen(name);
+    const size_t characters = strspn(column, alphabet);
+    uint8_t *byte = calloc(characters, 1);
+    TEST_ASSERT_NOT_NULL(byte);
+    TEST_ASSERT_EQUAL_UINT64((4 - characters % 4) % 4, strspn(column + characters, "="));
+    *count = characters * 6 / 8;
+    for (size_t bit = 0; bit < *count * 8; bit++) {
+        const long value = strchr(alphabet, column[bit / 6]) - alphabet;
+        byte[bit / 8] |= (uint8_t)((value >> (5 - bit % 6) & 1) << (7 - bit % 8));
+    }
+    return byte;
+}
+
+static void test_columns_are_base64_of_their_numbers_however_many(void)
+{
+    const uint32_t cycles[] = {1, 2, 3, 767, 768, 769, 3071, 3072, 3073, 5000};
+    for (unsigned n = 0; n < sizeof cycles / sizeof cycles[0]; n++) {
+        struct report *r = report_open(&limits);
+        size_t length, count;
+        add_restless_cycles(r, cycles[n]);
+        char *text = write_page(r, "{}", &length);
+        uint8_t *line = decode_column(text, "\"line\":\"", &count);
+        TEST_ASSERT_EQUAL_UINT64((size_t)4 * cycles[n], count);
+        for (size_t k = 0; k < cycles[n]; k++)
+            TEST_ASSERT_EQUAL_UINT32(k, line[4 * k] | (uint32_t)line[4 * k + 1] << 8);
+        uint8_t *rapid = decode_column(text, "\"rapid\":\"", &count);
+        TEST_ASSERT_EQUAL_UINT64(cycles[n], count);
+        for (size_t k = 0; k < cycles[n]; k++)
+            TEST_ASSERT_EQUAL_UINT8(k % 2 == 0, rapid[k]);
+        free(rapid);
+        free(line);
+        free(text);
+        report_close(r);
+    }
+}
+
 static void test_no_text_of_the_summary_can_end_its_script(void)
 {
     size_t length;
@@ -128,6 +169,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_largest_report_is_under_ten_megabytes);
     RUN_TEST(test_equal_runs_make_equal_bytes);
+    RUN_TEST(test_columns_are_base64_of_their_numbers_however_many);
     RUN_TEST(test_no_text_of_the_summary_can_end_its_script);
     RUN_TEST(test_every_place_of_the_template_is_filled);
     RUN_TEST(test_the_plotting_library_is_there_unless_the_report_says_why_not);
