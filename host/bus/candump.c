@@ -26,8 +26,9 @@ void candump_init(struct candump *log, FILE *file, const char *interface)
 
 void candump_select(struct candump *log, unsigned bus)
 {
-    log->interface_length =
-        (size_t)snprintf(log->interface, sizeof log->interface, "can%u", bus % 10);
+    memcpy(log->interface, "can", 3);
+    log->interface[3] = (char)('0' + bus % 10);
+    log->interface_length = 4;
 }
 
 static char *put_decimal(char *text, uint64_t value, unsigned digits)
