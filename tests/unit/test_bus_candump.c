@@ -63,6 +63,19 @@ static void test_an_overlong_interface_name_is_cut(void)
     TEST_ASSERT_EQUAL_STRING("(0000000000.000000) 0123456789abcde 001#\n", read_back());
 }
 
+static void test_a_line_names_the_bus_that_was_selected_for_it(void)
+{
+    struct can_frame frame = {.id = 0x001};
+    candump_init(&dump, file, "vcan12");
+    for (unsigned bus = 2; bus-- > 0;) {
+        candump_select(&dump, bus);
+        candump_frame(&dump, &frame, 0);
+    }
+    TEST_ASSERT_TRUE(candump_flush(&dump));
+    TEST_ASSERT_EQUAL_STRING("(0000000000.000000) can1 001#\n(0000000000.000000) can0 001#\n",
+                             read_back());
+}
+
 /* More than the buffer holds: each line must say what printf says. */
 static void test_many_lines_equal_those_of_printf(void)
 {
@@ -111,6 +124,7 @@ int main(void)
     RUN_TEST(test_a_frame_without_data_and_small_numbers_keep_their_zeros);
     RUN_TEST(test_a_remote_frame_has_an_r_and_its_length);
     RUN_TEST(test_an_overlong_interface_name_is_cut);
+    RUN_TEST(test_a_line_names_the_bus_that_was_selected_for_it);
     RUN_TEST(test_many_lines_equal_those_of_printf);
     RUN_TEST(test_a_file_that_cannot_be_written_is_told);
     return UNITY_END();
