@@ -7,6 +7,9 @@
 
 #define EMCY_LENGTH 8
 
+/* Below: 00xx, error reset or no error, whatever the lower byte is. */
+#define EMCY_FIRST 0x0100
+
 void takt_emcy_write(struct can_frame *frame, const struct emcy *emcy)
 {
     TAKT_ASSERT(emcy->node >= NODE_MIN && emcy->node <= NODE_MAX);
@@ -24,6 +27,8 @@ bool takt_emcy_read(const struct can_frame *frame, struct emcy *emcy)
         frame->length != EMCY_LENGTH)
         return false;
     emcy->code = little_endian_read16(frame->data);
+    if (emcy->code < EMCY_FIRST)
+        emcy->code = EMCY_NONE;
     emcy->error_register = frame->data[2];
     memcpy(emcy->vendor, frame->data + 3, sizeof emcy->vendor);
     return true;

@@ -35,7 +35,7 @@ struct emcy {
 };
 
 void takt_emcy_write(struct can_frame *frame, const struct emcy *emcy);
-/* False: the frame is no emergency message. */
+/* False: the frame is no emergency message. Codes 00xx, "error reset", are EMCY_NONE. */
 bool takt_emcy_read(const struct can_frame *frame, struct emcy *emcy);
 
 /*

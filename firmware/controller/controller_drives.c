@@ -149,7 +149,8 @@ void takt_controller_drives_config(const struct machine *machine, const struct c
     config->no_error_pdo = machine->error_pdo == 0;
     config->heartbeat_ms = (uint16_t)machine->heartbeat_ms;
     config->boot_timeout_cycles = cycles_in(machine, 1e-3 * machine->boot_timeout_ms);
-    config->start_timeout_cycles = cycles_in(machine, START_TIMEOUT_S);
+    config->start_timeout_cycles =
+        cycles_in(machine, maths_max(START_TIMEOUT_S, 1e-3 * machine->boot_timeout_ms));
     config->answer_timeout_cycles = cycles_in(machine, ANSWER_TIMEOUT_S);
     config->sdo_timeout_cycles = cycles_in(machine, 1e-3 * machine->sdo_timeout_ms);
     config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);

@@ -22,7 +22,7 @@ static void init_axis(struct drives *d, unsigned index)
     axis->reported = d->cycle - 1;
     axis->heartbeat = d->cycle - 1;
     axis->follow_mode = axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
-    axis->reset_pending = true;
+    axis->reset_pending = axis->hold_pending = true;
     takt_drives_forget_pdos(axis);
     d->axis_of_node[bus][d->node[index]] = (uint8_t)index;
 }
@@ -208,6 +208,8 @@ void takt_drives_raise(struct drives *d, unsigned index, enum takt_error error, 
 
     TAKT_ASSERT(index < d->count);
     d->axis[index].lost = d->axis[index].lost || !can_follow(&d->axis[index], error);
+    if (error == TAKT_ERROR_DRIVE_REBOOTED)
+        takt_drives_doubt_home(d, index);
     name_axis(d, index, &word);
     raise(d, index, &word, error, value, meaning);
 }

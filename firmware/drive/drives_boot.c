@@ -180,7 +180,7 @@ void takt_drives_take_ask(struct drives *d, const struct drives_answer *answer)
 
 #define REQUIRED  DRIVES_GIVEN_UP_COUNT
 #define NOTHING   (DRIVES_GIVEN_UP_COUNT + 1)
-#define SET_PLAIN 15 /* from here on: only where the axis is homed */
+#define SET_PLAIN 16 /* from here on: only where the axis is homed */
 
 struct setting {
     uint16_t index;
@@ -194,7 +194,8 @@ struct setting {
 #define SET_SYNC      4
 #define SET_PERIOD    8
 #define SET_EXPONENT  9
-#define SET_RAMPS     13 /* up and down: only of profile velocity */
+#define SET_AGAIN     10 /* the period, in the unit that the drive keeps */
+#define SET_RAMPS     14 /* up and down: only of profile velocity */
 static const struct setting settings[] = {
     {OBJECT_PRODUCER_HEARTBEAT, 0, 2, DRIVES_NO_HEARTBEAT},
     {OBJECT_CONSUMER_HEARTBEAT, 1, 4, DRIVES_NO_WATCH},
@@ -206,6 +207,7 @@ static const struct setting settings[] = {
     {OBJECT_SYNC_PERIOD, 0, 4, DRIVES_NO_SYNC_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 1, 1, DRIVES_NO_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 2, 1, DRIVES_NO_PERIOD},
+    {CIA402_INTERPOLATION_PERIOD, 1, 1, DRIVES_NO_PERIOD},
     {CIA402_CONNECTION_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
     {CIA402_QUICK_STOP_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
     {CIA402_FAULT_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
@@ -232,6 +234,21 @@ static void split_period(uint32_t cycle_us, uint32_t *value, int *exponent)
         *value = (*value + 5) / 10;
         ++*exponent;
     }
+}
+
+/* of an int8 */
+static int exponent_of(uint32_t raw)
+{
+    return (int)(raw & 0x7F) - (int)(raw & 0x80);
+}
+
+/* The nearest value in a unit of the drive's own; such a unit is between 1 us and 1 s. */
+static uint32_t period_in(uint32_t cycle_us, int exponent)
+{
+    double value = cycle_us;
+    for (; exponent > -6; exponent--)
+        value /= 10;
+    return (uint32_t)maths_clamp(takt_maths_round(value), 1, UINT8_MAX);
 }
 
 /* units = round(value * velocity_units_per_mm_s) of a velocity or an acceleration. */
@@ -281,6 +298,7 @@ static uint32_t value_of(const struct drives *d, unsigned number)
                                d->cycle_us,
                                period,
                                (uint8_t)exponent,
+                               period_in(d->cycle_us, exponent_of(d->read[1])),
                                CIA402_CONNECTION_QUICK_STOP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
@@ -302,12 +320,57 @@ static bool is_mute(const struct drives *d)
            d->heartbeat_ms > 0;
 }
 
+static void take_back(struct drives *d, enum drives_given_up what)
+{
+    d->axis[d->at_axis].given_up &= ~(1u << what);
+}
+
+static void raise_period(struct drives *d, double period_us)
+{
+    takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_PERIOD, period_us, NULL);
+    takt_diagnostic_set_limit(&d->fault, d->cycle_us);
+}
+
+/*
+ * A drive that keeps a time between targets of its own makes its motion of it: a longer one lags
+ * behind, a shorter one stops between targets. With 0 it takes the time as it comes.
+ */
+static void check_period(struct drives *d)
+{
+    double period_us = (uint8_t)d->read[0];
+    int exponent = exponent_of(d->read[1]);
+    for (; exponent < -6; exponent++)
+        period_us /= 10;
+    for (; exponent > -6; exponent--)
+        period_us *= 10;
+    bool is_used = d->axis[d->at_axis].follow_mode != CIA402_MODE_PROFILE_VELOCITY;
+    if (maths_abs(period_us - d->cycle_us) <= 0.5)
+        take_back(d, DRIVES_NO_PERIOD);
+    else if (is_used && period_us > 0)
+        raise_period(d, period_us);
+}
+
+/* Whether the value is to be told in another unit; else what the drive has is looked at. */
+static bool has_unit_of_its_own(struct drives *d)
+{
+    const bool is_known = d->read[2] + d->read[3] == 0;
+    const bool is_otherwise =
+        is_known && drives_has_given_up(&d->axis[d->at_axis], DRIVES_NO_PERIOD);
+    if (is_otherwise && d->read[1] != (value_of(d, SET_EXPONENT) & 0xFF))
+        return true;
+    if (is_otherwise)
+        check_period(d);
+    return false;
+}
+
 bool takt_drives_next_set(struct drives *d, struct drives_step *step)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     TAKT_ASSERT(d->at_axis < d->count);
     if (d->at_step == SET_GUARD && !is_mute(d))
         d->at_step = SET_LIFE + 1;
+    if (d->at_step == SET_AGAIN && !has_unit_of_its_own(d))
+        d->at_step++;
     if (d->at_step == SET_RAMPS && axis->follow_mode != CIA402_MODE_PROFILE_VELOCITY)
         d->at_step = SET_PLAIN;
     if (d->at_step == (axis->config.homing.order != 0 ? SET_COUNT : SET_PLAIN))
@@ -348,11 +411,6 @@ static void miss(struct drives *d, const struct drives_answer *answer)
                       answer->abort_code != SDO_ABORT_NONE ? answer->abort_code : SDO_ABORT_VALUE);
 }
 
-static void take_back(struct drives *d, enum drives_given_up what)
-{
-    d->axis[d->at_axis].given_up &= ~(1u << what);
-}
-
 /*
  * What stands in for a heartbeat. read: 1017; then 100C, 0 where there is none, and the time after
  * which the drive takes us for lost, 100C times 100D. Where that is too short the drive is better
@@ -371,33 +429,13 @@ static void take_guard(struct drives *d, uint32_t factor)
         take_back(d, DRIVES_NO_WATCH);
 }
 
-/*
- * A drive that keeps a time between targets of its own makes its motion of it: a longer one lags
- * behind, a shorter one stops between targets. With 0 it takes the time as it comes.
- */
-static void check_period(struct drives *d)
-{
-    double period_us = (uint8_t)d->read[0];
-    int exponent = (int)(d->read[1] & 0x7F) - (int)(d->read[1] & 0x80); /* of an int8 */
-    for (; exponent < -6; exponent++)
-        period_us /= 10;
-    for (; exponent > -6; exponent--)
-        period_us *= 10;
-    bool is_used = d->axis[d->at_axis].follow_mode != CIA402_MODE_PROFILE_VELOCITY;
-    if (!is_used || period_us <= 0 || maths_abs(period_us - d->cycle_us) <= 0.5)
-        return;
-    takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_PERIOD, period_us, NULL);
-    takt_diagnostic_set_limit(&d->fault, d->cycle_us);
-}
-
 /* What the drive has: read after a refusal, else what it has been told. */
 static void take_period(struct drives *d, const struct drives_answer *answer, uint32_t value)
 {
-    unsigned part = d->at_step - SET_PERIOD;
+    unsigned part = d->at_step == SET_EXPONENT;
     d->read[part] = value;
     d->read[2 + part] = answer->abort_code != SDO_ABORT_NONE;
-    if (part == 1 && drives_has_given_up(&d->axis[d->at_axis], DRIVES_NO_PERIOD) &&
-        d->read[2] + d->read[3] == 0)
+    if (d->at_step == SET_AGAIN)
         check_period(d);
 }
 
@@ -441,7 +479,7 @@ void takt_drives_take_set(struct drives *d, const struct drives_answer *answer)
     if (is_refused || value != wanted)
         miss(d, answer);
     take_kept(d, is_refused ? 0 : value);
-    if (d->at_step == SET_PERIOD || d->at_step == SET_EXPONENT)
+    if (d->at_step >= SET_PERIOD && d->at_step <= SET_AGAIN)
         take_period(d, answer, value);
     d->is_looking = false;
     d->at_step++;

@@ -13,10 +13,10 @@
 #define MODE_TIMEOUT_MS 1000
 
 /*
- * A drive shows that it is homing within this time; one that shows "done" from then on is. Before,
- * "done" may be an older one.
+ * A drive that shows "done" for so long is: what it shows first may be of an older homing, and its
+ * position may follow later than its statusword. An error counts when it could have begun anew.
  */
-#define HOMING_SHOWN_MS 20
+#define HOMING_SHOWN_MS 100
 
 /* Lowest order above the present one; 0: none. */
 static uint8_t next_order(const struct drives *d)
@@ -57,6 +57,21 @@ void takt_drives_check_all_links(struct drives *d)
     for (unsigned i = 0; i < d->count; i++)
         if (!drives_is_linked(d, &d->axis[i]))
             (void)takt_drives_check_links(d, i);
+}
+
+/* One that has been started boots by itself, so it may have lost its zero. */
+void takt_drives_doubt_home(struct drives *d, unsigned index)
+{
+    TAKT_ASSERT(index < d->count);
+    d->homed = d->homed && !d->axis[index].started;
+}
+
+/* So may one that is not heard any more: it may be switched off. */
+void takt_drives_doubt_homes(struct drives *d)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (drives_heartbeat_age_cycles(d, &d->axis[i]) > d->heartbeat_age_max_cycles)
+            takt_drives_doubt_home(d, i);
 }
 
 static bool is_late(const struct drives *d)
@@ -118,8 +133,8 @@ static void begin_homing(struct drives *d)
             continue;
         is_any = true;
         axis->command = CIA402_START_HOMING;
-        axis->homing_seen = false;
         axis->homed = false;
+        axis->attained_cycles = 0;
     }
     takt_drives_enter_phase(d, is_any ? DRIVES_HOME : DRIVES_FOLLOW);
     if (!is_any)
@@ -167,8 +182,10 @@ void takt_drives_select(struct drives *d)
         d->phase_cycles = 0;
     } else if (d->sdo.result == SDO_UNANSWERED) {
         miss_mode(d);
-    } else if (is_late(d)) {
-        takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
+    } else {
+        d->repeats = 0;
+        if (is_late(d))
+            takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
     }
     if (d->state != DRIVES_STARTING)
         return;
@@ -212,23 +229,27 @@ static void take_home(struct drives *d, unsigned index)
                           takt_drives_axis_shown(axis, axis->actual_mm), NULL);
 }
 
+static bool lasts(const struct drives *d, uint32_t cycles)
+{
+    return takt_drives_cycles_ms(d, cycles) >= HOMING_SHOWN_MS;
+}
+
 static void follow_homing(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
-    const uint16_t done = CIA402_HOMING_ATTAINED | CIA402_TARGET_REACHED;
     bool is_told = axis->controlword == (CIA402_ENABLE_OPERATION | CIA402_START_HOMING);
-    bool is_done = is_told && (axis->statusword & done) == done;
-    double since_ms = takt_drives_cycles_ms(d, d->phase_cycles);
     TAKT_ASSERT(index < d->count);
-    if (is_told && !is_done)
-        axis->homing_seen = true;
-    if (is_told && since_ms >= HOMING_SHOWN_MS && axis->statusword & CIA402_HOMING_ERROR)
+    if (!is_told || !(axis->statusword & CIA402_HOMING_ATTAINED))
+        axis->attained_cycles = 0;
+    else if (axis->statusword & CIA402_TARGET_REACHED)
+        axis->attained_cycles++;
+    if (is_told && lasts(d, d->phase_cycles) && axis->statusword & CIA402_HOMING_ERROR)
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING, axis->statusword, NULL);
     else if (d->phase_cycles > axis->config.homing.timeout_cycles)
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING_SLOW,
                           1e-3 * takt_drives_cycles_ms(d, axis->config.homing.timeout_cycles),
                           NULL);
-    if (is_done && (axis->homing_seen || since_ms >= HOMING_SHOWN_MS))
+    else if (lasts(d, axis->attained_cycles))
         take_home(d, index);
 }
 

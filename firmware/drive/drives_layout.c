@@ -59,6 +59,64 @@ void takt_drives_set_target_pdo(const struct drives *d, struct pdo *pdo)
     takt_target_pdo_set(pdo, node, d->on_bus[bus], d->axis[d->at_axis].place, d->group);
 }
 
+static void add(struct pdo *pdo, uint32_t object, bool is_wanted)
+{
+    TAKT_ASSERT(!is_wanted || pdo->mapping.count < PDO_MAPPED_MAX);
+    if (is_wanted)
+        pdo->mapping.object[pdo->mapping.count++] = object;
+}
+
+static void want_target(const struct drives *d, struct pdo *pdo)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    TAKT_ASSERT(d->at_axis < d->count);
+    if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
+        add(pdo, takt_drives_target_of(axis), true);
+        return;
+    }
+    takt_drives_set_target_pdo(d, pdo);
+    pdo->mapping.object[axis->place % d->group] = takt_drives_target_of(axis);
+}
+
+static void want_received(const struct drives *d, struct pdo *pdo)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    unsigned pass = d->mapping.pass;
+    bool has_target = axis->target_frame.length > 0;
+    bool has_control = pass == PASS_TARGET || axis->control_frame.length > 0;
+    if (pass > 0 && !has_target) {
+        pdo->transmission = PDO_EVERY_SYNC;
+        want_target(d, pdo);
+        add(pdo, CIA402_CONTROLWORD, pass == PASS_AGAIN);
+    } else if (pass != PASS_AGAIN && !has_control) {
+        add(pdo, CIA402_CONTROLWORD, true);
+        add(pdo, CIA402_MODE, true);
+    }
+}
+
+static void want_transmitted(const struct drives *d, struct pdo *pdo)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    bool has_room = d->mapping.pass < PASS_APART || axis->status_id == axis->position_id;
+    bool has_no_error = axis->error_id == NO_TPDO && has_room && !d->no_error_pdo;
+    add(pdo, CIA402_STATUSWORD, axis->status_id == NO_TPDO);
+    add(pdo, CIA402_POSITION_ACTUAL, axis->position_id == NO_TPDO);
+    if (pdo->mapping.count > 0) {
+        pdo->transmission = PDO_EVERY_SYNC;
+    } else {
+        add(pdo, CIA402_ERROR_CODE, has_no_error);
+        add(pdo, CIA402_FOLLOWING_ERROR, has_no_error);
+    }
+}
+
+void takt_drives_want(const struct drives *d, struct pdo *pdo)
+{
+    if (drives_is_transmitted(&d->mapping))
+        want_transmitted(d, pdo);
+    else
+        want_received(d, pdo);
+}
+
 static void take_received(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];

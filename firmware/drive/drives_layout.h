@@ -8,8 +8,11 @@
 #include "drive/drives_private.h"
 
 /*
- * Passes of drives_map.c from which TPDOs are meant, and from which one of either report will do.
+ * Passes of drives_map.c: of the target, of RPDO1 again, from which TPDOs are meant, and from which
+ * one of either report will do.
  */
+#define PASS_TARGET 1
+#define PASS_AGAIN  4
 #define PASS_STATUS 5
 #define PASS_APART  9
 
@@ -27,6 +30,8 @@ static inline bool drives_is_transmitted(const struct drives_mapping *m)
 uint8_t takt_drives_byte_of(const struct pdo *pdo, uint32_t object);
 /* The object that is the target, by the mode in which the drive follows. */
 uint32_t takt_drives_target_of(const struct drives_axis *axis);
+/* Entries and type that the PDO being configured is to have. */
+void takt_drives_want(const struct drives *d, struct pdo *pdo);
 /* Something of this PDO is used. */
 bool takt_drives_uses(const struct drives_axis *axis, const struct pdo *pdo);
 

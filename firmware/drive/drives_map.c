@@ -24,9 +24,7 @@
 /* RPDOs, and as many TPDOs, that are used or made not valid. */
 #define PDOS 4
 
-#define PASS_TARGET 1
-#define PASS_AGAIN  4
-#define PASSES      13
+#define PASSES 13
 
 #define MAPPING_OFFSET (OBJECT_RPDO_MAPPING - OBJECT_RPDO)
 
@@ -66,56 +64,6 @@ static unsigned parameters_of(const struct drives_mapping *m)
 
 /* ---- What is wanted ---- */
 
-static void add(struct pdo *pdo, uint32_t object, bool is_wanted)
-{
-    TAKT_ASSERT(!is_wanted || pdo->mapping.count < PDO_MAPPED_MAX);
-    if (is_wanted)
-        pdo->mapping.object[pdo->mapping.count++] = object;
-}
-
-static void want_target(const struct drives *d, struct pdo *pdo)
-{
-    const struct drives_axis *axis = &d->axis[d->at_axis];
-    TAKT_ASSERT(d->at_axis < d->count);
-    if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
-        add(pdo, takt_drives_target_of(axis), true);
-        return;
-    }
-    takt_drives_set_target_pdo(d, pdo);
-    pdo->mapping.object[axis->place % d->group] = takt_drives_target_of(axis);
-}
-
-static void want_received(const struct drives *d, struct pdo *pdo)
-{
-    const struct drives_axis *axis = &d->axis[d->at_axis];
-    unsigned pass = d->mapping.pass;
-    bool has_target = axis->target_frame.length > 0;
-    bool has_control = pass == PASS_TARGET || axis->control_frame.length > 0;
-    if (pass > 0 && !has_target) {
-        pdo->transmission = PDO_EVERY_SYNC;
-        want_target(d, pdo);
-        add(pdo, CIA402_CONTROLWORD, pass == PASS_AGAIN);
-    } else if (pass != PASS_AGAIN && !has_control) {
-        add(pdo, CIA402_CONTROLWORD, true);
-        add(pdo, CIA402_MODE, true);
-    }
-}
-
-static void want_transmitted(const struct drives *d, struct pdo *pdo)
-{
-    const struct drives_axis *axis = &d->axis[d->at_axis];
-    bool has_room = d->mapping.pass < PASS_APART || axis->status_id == axis->position_id;
-    bool has_no_error = axis->error_id == NO_TPDO && has_room && !d->no_error_pdo;
-    add(pdo, CIA402_STATUSWORD, axis->status_id == NO_TPDO);
-    add(pdo, CIA402_POSITION_ACTUAL, axis->position_id == NO_TPDO);
-    if (pdo->mapping.count > 0) {
-        pdo->transmission = PDO_EVERY_SYNC;
-    } else {
-        add(pdo, CIA402_ERROR_CODE, has_no_error);
-        add(pdo, CIA402_FOLLOWING_ERROR, has_no_error);
-    }
-}
-
 static bool has_reports(const struct drives_axis *axis)
 {
     return axis->status_id != NO_TPDO && axis->position_id != NO_TPDO;
@@ -131,10 +79,7 @@ static void begin(struct drives *d)
     memset(&m->pdo, 0, sizeof m->pdo);
     m->pdo.transmission = PDO_EVENT;
     m->pdo.cob_id = (uint16_t)(first + number_of(m) * PDO_NEXT_FUNCTION + d->node[d->at_axis]);
-    if (drives_is_transmitted(m))
-        want_transmitted(d, &m->pdo);
-    else
-        want_received(d, &m->pdo);
+    takt_drives_want(d, &m->pdo);
     m->id = m->pdo.cob_id | (drives_is_transmitted(m) ? OBJECT_PDO_NO_RTR : 0);
     m->entry = 0;
     m->is_taken = !keeps;
@@ -359,11 +304,32 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
     return true;
 }
 
+static bool has_what_was_told(const struct drives *d, uint32_t value)
+{
+    struct drives_step told = {0};
+    (void)find_telling(d, &told);
+    return value == told.value;
+}
+
+/* What is refused is read: it may be so already. */
+static bool looks(struct drives *d, uint32_t abort_code)
+{
+    if (d->is_looking || abort_code == SDO_ABORT_NONE || sdo_says_absent(abort_code))
+        return false;
+    d->read[0] = abort_code;
+    d->is_looking = true;
+    return true;
+}
+
 static void take_telling(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_mapping *m = &d->mapping;
-    bool is_good = answer->abort_code == SDO_ABORT_NONE;
-    bool is_done = is_good || take_refusal(d, answer->abort_code);
+    if (looks(d, answer->abort_code))
+        return;
+    bool is_good = answer->abort_code == SDO_ABORT_NONE &&
+                   (!d->is_looking || has_what_was_told(d, answer->value));
+    bool is_done = is_good || take_refusal(d, d->is_looking ? d->read[0] : answer->abort_code);
+    d->is_looking = false;
     m->is_timed = m->is_timed || (m->step == TIMER && is_good && is_report(&m->pdo));
     if (m->step == ENTRY)
         m->entry = (uint8_t)(m->entry + is_done);
@@ -491,8 +457,10 @@ bool takt_drives_next_map(struct drives *d, struct drives_step *step)
 {
     do {
         while (d->mapping.pass < PASSES && d->at_part == DRIVES_MAP) {
-            if (find_request(d, step))
+            if (find_request(d, step)) {
+                step->length = d->is_looking ? 0 : step->length;
                 return true;
+            }
             pass_step(d);
         }
     } while (d->at_part == DRIVES_MAP && takt_drives_finish_map(d));

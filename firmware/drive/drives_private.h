@@ -275,6 +275,9 @@ static inline bool drives_ends_group(const struct drives *d, unsigned i)
 void takt_drives_select(struct drives *d);
 void takt_drives_home(struct drives *d);
 void takt_drives_follow(struct drives *d);
+/* A drive has booted, by our reset or not; a cycle of DRIVES_FAULTED. */
+void takt_drives_doubt_home(struct drives *d, unsigned index);
+void takt_drives_doubt_homes(struct drives *d);
 /* The next order of axes that are homed; none: all drives are ready. */
 void takt_drives_home_next(struct drives *d);
 

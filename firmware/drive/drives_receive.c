@@ -154,6 +154,7 @@ void takt_drives_receive(struct drives *d, const struct can_port *port)
         takt_drives_watch_brakes(d);
         break;
     case DRIVES_FAULTED:
+        takt_drives_doubt_homes(d);
         break;
     }
 }

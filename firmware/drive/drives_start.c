@@ -45,7 +45,7 @@ void takt_drives_enter_phase(struct drives *d, enum drives_phase phase)
 {
     d->phase = phase;
     d->phase_cycles = 0;
-    d->tells = 0;
+    d->tells = d->progress = 0;
     d->is_telling = false;
     rewind_to(d, 0);
     if (phase == DRIVES_CONFIGURE)
@@ -86,6 +86,7 @@ void takt_drives_start_again(struct drives *d, unsigned index)
     if (axis->reset_pending)
         return; /* it does not know of its reset yet, and will boot again */
     axis->booted = true;
+    takt_drives_doubt_home(d, index);
     hold(axis);
     if (d->phase >= DRIVES_SELECT || d->restarts++ == RESTARTS_MAX)
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
@@ -95,20 +96,16 @@ void takt_drives_start_again(struct drives *d, unsigned index)
 
 /*
  * Reset once, and once more when that has taken too long: the order may have been lost, or the
- * answer.
+ * answer. There are drives that boot without a word: whether one is there its first answer tells.
  */
 static void boot(struct drives *d)
 {
     bool all = takt_drives_io_boot(d);
     for (unsigned i = 0; i < d->count; i++) {
-        all = all && d->axis[i].booted;
-        if (d->axis[i].booted)
-            continue;
-        if (d->phase_cycles == d->boot_timeout_cycles)
-            d->axis[i].reset_pending = true;
-        else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
-            takt_drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT,
-                              2e-3 * takt_drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
+        struct drives_axis *axis = &d->axis[i];
+        all = all && (axis->booted || d->phase_cycles > 2 * d->boot_timeout_cycles);
+        if (!axis->booted && d->phase_cycles == d->boot_timeout_cycles)
+            axis->reset_pending = true;
     }
     if (all)
         takt_drives_enter_phase(d, DRIVES_CONFIGURE);
@@ -243,7 +240,10 @@ static void miss_answer(struct drives *d)
     const uint32_t object = d->sdo.object;
     bool is_first = d->at_part == DRIVES_ASK && d->at_step == 0;
     bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
-    if (!(may_boot || d->repeats++ < DRIVES_SDO_REPEATS) || !ask_next(d))
+    if (is_first && !d->axis[d->at_axis].booted)
+        takt_drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_ABSENT,
+                          2e-3 * takt_drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
+    else if (!(may_boot || d->repeats++ < DRIVES_SDO_REPEATS) || !ask_next(d))
         takt_drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNANSWERED,
                                  takt_drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
 }
@@ -327,8 +327,31 @@ static void raise_late(struct drives *d)
             raise_not_enabled(d, i);
 }
 
+/* Statuswords on the way to "operation enabled" have 0, 1, 3 and 7 here, and not a fault's bit. */
+#define STEP_BITS 0x07
+#define FAULT_BIT 0x08
+
+/*
+ * Drives that charge, look for their commutation or open a brake take their time over a state. Each
+ * first step of them all gives as much time again, which is three for a drive: one that falls back
+ * gets no more.
+ */
+static void count_progress(struct drives *d)
+{
+    unsigned steps = 0;
+    for (unsigned i = 0; i < d->count; i++) {
+        const uint16_t statusword = d->axis[i].statusword;
+        steps += d->axis[i].heard && !(statusword & FAULT_BIT) ? statusword & STEP_BITS : 0;
+    }
+    if (steps <= d->progress)
+        return;
+    d->progress = (uint8_t)steps;
+    d->phase_cycles = 0;
+}
+
 static void enable(struct drives *d)
 {
+    count_progress(d);
     if (all_are_enabled(d))
         enter_operation(d);
     else if (d->phase_cycles > d->start_timeout_cycles)
@@ -345,9 +368,9 @@ bool takt_drives_tells_mode(const struct drives_axis *axis)
 /*
  * A fault is reset by an edge; one that has come too early for the drive does nothing, so it comes
  * again and again. The times between are long beside those in which drives look at their
- * controlword, 0.25 to 10 ms, whatever the cycle is.
+ * controlword, 0.25 to 10 ms, and those over which some want to see bit 7, whatever the cycle is.
  */
-#define RESET_US 32000U
+#define RESET_US 100000U
 
 uint16_t takt_drives_controlword(const struct drives *d, const struct drives_axis *axis)
 {

@@ -94,8 +94,8 @@ struct drives_axis {
     double lag_mm;        /* following error of the last report before a fault */
     bool lost;            /* after a fault: its setpoints lead nowhere */
     bool homed;
-    bool homing_seen;    /* the statusword has shown that homing is under way */
-    int32_t braking_inc; /* where it was when its rest was looked at last, or squaring began */
+    uint16_t attained_cycles; /* the statusword has shown that homing is done for so long */
+    int32_t braking_inc;      /* where it was when its rest was looked at last, or squaring began */
     uint32_t rest_cycles;
 
     /* What the start has found. */
@@ -191,6 +191,7 @@ struct drives {
     bool steers;        /* some follow velocities */
     bool guards;        /* nodes that have been started are guarded */
     uint8_t probing;    /* bits, drives_probe.c */
+    uint8_t progress;   /* steps of all drives to "operation enabled", at most so far */
     uint8_t home_order; /* axes of this order are being homed; 0: not yet */
     uint32_t read
         [AXIS_COUNT]; /* objects of the drive that is being configured: its period, or its scaling;

@@ -4,6 +4,12 @@
 #include "canopen/sdo_client.h"
 #include "cli/message.h"
 
+/* The first four bytes are a number of entries, which is far below 2^24. */
+static bool is_text(const struct text *text)
+{
+    return text->length >= 4 && text->bytes[3] != '\0';
+}
+
 static bool load(struct text *text, struct concise_dcf *dcf, const char *path)
 {
     uint32_t object;
@@ -18,7 +24,13 @@ static bool load(struct text *text, struct concise_dcf *dcf, const char *path)
                                 .length = (uint32_t)text->length};
     if (takt_concise_dcf_is_well(dcf, &object))
         return true;
-    if (object != 0)
+    if (is_text(text))
+        message_error(
+            path, 0, 0,
+            "this is a text, and dcf wants a concise configuration (CiA 302, object 1F22), as "
+            "Lely's dcfgen writes it; a DCF or EDS is for eds, or for the maker's tool "
+            "and drive_is_set_up = 1");
+    else if (object != 0)
         message_error(path, 0, 0, "the entry of object %04X:%02X has no value of 1 to %d bytes",
                       (unsigned)sdo_index(object), (unsigned)sdo_sub(object), SDO_CLIENT_VALUE_MAX);
     else

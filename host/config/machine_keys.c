@@ -254,7 +254,7 @@ const struct machine_key machine_keys[] = {
     COUNT(SECTION_BUS, "heartbeat_ms", KEY_UINT32, IN_SETUP(machine.heartbeat_ms), 0, 20000,
           "period of the heartbeats of drives and controller; three missed are an alarm; 0: none"),
     COUNT(SECTION_BUS, "boot_timeout_ms", KEY_UINT32, IN_SETUP(machine.boot_timeout_ms), 1, 600000,
-          "longest time a drive takes to boot; then it is reset once more, and after as long it is missing"),
+          "longest time a drive takes to boot; then it is reset once more, and after as long asked for the last time; above 5 s also over each state on its way to operation"),
     COUNT(SECTION_BUS, "sdo_timeout_ms", KEY_UINT32, IN_SETUP(machine.sdo_timeout_ms), 1, 600000,
           "longest time a drive takes to answer a request while it is started"),
     FROM(SECTION_BUS, "position_gain_per_s", SCALE_NONE, IN_SETUP(machine.position_gain_per_s), 0, 1e4,

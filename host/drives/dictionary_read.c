@@ -4,6 +4,7 @@
  */
 #include "drives/dictionary_read.h"
 #include "drives/dictionary_sections.h"
+#include "drives/dictionary_text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -333,19 +334,29 @@ static size_t names_most(const struct dictionary_sections *r, size_t length)
     return most;
 }
 
+/* A file without a section of an object: what it is instead, where that can be seen. */
+static bool fail_empty(struct dictionary_problem *wrong, const char *plain, size_t length)
+{
+    const struct text_part text = words_trim(plain, length);
+    if (text.length > 0 && memchr(text.start, '<', text.length < 4 ? text.length : 4) != NULL)
+        return fail(wrong, "this is XML, no electronic data sheet: of a device description (XDD) "
+                           "CANopenEditor or the maker's tool makes an EDS");
+    return fail(wrong, "this is no electronic data sheet: it has no section [1000]");
+}
+
 bool dictionary_read(struct dictionary *dictionary, const char *text, size_t length,
                      struct dictionary_problem *wrong)
 {
     struct dictionary_sections r = {0};
     struct builder b = {.reader = &r};
-    bool good = dictionary_sections_read(&r, text, length) || fail(wrong, "out of memory");
+    char *plain = dictionary_plain_text(text, &length);
+    bool good = (plain != NULL && dictionary_sections_read(&r, plain, length)) ||
+                fail(wrong, "out of memory");
     if (good && r.count > 0)
         b.names = malloc(names_most(&r, length));
-    good = good &&
-           (b.names != NULL ||
-            fail(wrong, "this is no electronic data sheet: it has no section [1000]")) &&
-           build(&b, wrong);
+    good = good && (b.names != NULL || fail_empty(wrong, plain, length)) && build(&b, wrong);
     dictionary_sections_free(&r);
+    free(plain);
     *dictionary = (struct dictionary){
         .row = b.row, .memory = b.row, .count = b.count, .dummies = r.dummies, .names = b.names};
     if (!good)

@@ -4,6 +4,7 @@
  */
 #include "drives/dictionary_sections.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,6 +108,15 @@ static bool take_pair(struct dictionary_sections *r, struct text_part key, struc
     return true;
 }
 
+/* Some tools take a semicolon behind a space for a comment, so there are sheets with such. */
+static struct text_part without_comment(struct text_part line)
+{
+    for (size_t i = 1; i < line.length; i++)
+        if (line.start[i] == ';' && isspace((unsigned char)line.start[i - 1]))
+            return words_trim(line.start, i);
+    return line;
+}
+
 static bool take_line(struct dictionary_sections *r, struct text_part line, unsigned number)
 {
     const char *equals = line.length > 0 ? memchr(line.start, '=', line.length) : NULL;
@@ -126,7 +136,7 @@ static bool read_lines(struct dictionary_sections *r, const char *text, size_t l
     for (unsigned number = 1; at < length; number++) {
         const char *end = memchr(text + at, '\n', length - at);
         size_t line = end ? (size_t)(end - text) - at : length - at;
-        if (!take_line(r, words_trim(text + at, line), number))
+        if (!take_line(r, without_comment(words_trim(text + at, line)), number))
             return false;
         at += line + 1;
     }

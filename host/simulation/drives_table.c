@@ -177,20 +177,29 @@ static const struct remedy {
      "home_order = 0 for a drive that cannot home"},
     {TAKT_ERROR_DRIVE_NOT_ENABLED, NULL, false,
      "look at its power stage, enable and safe torque off (STO) inputs, and at its manual on what "
-     "it waits for"},
+     "it waits for; if it takes longer over that, make boot_timeout_ms in [bus] as long"},
+    {TAKT_ERROR_DRIVE_HEARTBEAT, NULL, false,
+     "look at its cable and power; if it takes no such period in 1017, make heartbeat_ms in [bus] "
+     "longer"},
+    {TAKT_ERROR_DRIVE_REBOOTED, NULL, false,
+     "look at its supply; its axis has to find its home again if its encoder counts from power-on"},
     {TAKT_ERROR_DRIVE_SILENT, NULL, false,
      "look at its cable and power; if it has never sent one, at its first TPDO (1800, 1A00) and at "
      "SYNC (1005)"},
-    {TAKT_ERROR_DRIVE_MODE, NULL, false, "look at the set-up of the drive, objects 6060 and 6502"},
+    {TAKT_ERROR_DRIVE_STATE, NULL, false,
+     "look at the supply of its power stage, at its enable and safe torque off (STO) inputs"},
+    {TAKT_ERROR_DRIVE_MODE, NULL, false,
+     "look at the set-up of the drive, objects 6060 and 6502; one that changes its mode without "
+     "torque alone cannot be homed from here: home_order = 0"},
     {TAKT_ERROR_DRIVE_REFUSES, "6083 6084", false,
      "set velocity_units_per_mm_s to the unit of the drive (rpm: 60 by the travel of a turn), make "
      "max_acceleration_mm_s2 lower, or these ramps steeper with the maker's tool"},
     {TAKT_ERROR_DRIVE_REFUSES, NULL, false,
      "set it up with the maker's tool; homing is home_order, home_method and home_offset_mm"},
     {TAKT_ERROR_DRIVE_UNMAPPED, "6041 6064", false,
-     "map it with the maker's tool into a TPDO that is valid, and of transmission type 1 or with "
-     "an event timer (1800:05) of the cycle, and store that; a drive that has it for no PDO cannot "
-     "be used"},
+     "map it with the maker's tool into a TPDO that is valid, has an identifier with the drive's "
+     "node id (180, 280, 380 or 480 + node), and is of transmission type 1 or with an event timer "
+     "(1800:05) of the cycle, and store that; a drive that has it for no PDO cannot be used"},
     {TAKT_ERROR_DRIVE_UNMAPPED, NULL, true,
      "choose a drive, or with the maker's tool a mode or a firmware, that has a target position "
      "(607A) or velocity (60FF) and 6041 and 6064 for its PDOs"},
@@ -210,7 +219,8 @@ static const struct remedy {
      "maker's tool"},
     {TAKT_ERROR_DRIVE_FOLLOWING, NULL, false,
      "look at increments_per_mm and the gains of the drive; what it cannot follow is too much for "
-     "it: max_acceleration_mm_s2, max_velocity_mm_s"},
+     "it: max_acceleration_mm_s2, max_velocity_mm_s; a drive has limits of its own (607D), and "
+     "positions that wrap (607B) are none"},
     {TAKT_ERROR_DRIVE_SKEW, NULL, false,
      "look at the switches of both drives, and at home_offset_mm and skew_max_mm in [gantry]"},
     {TAKT_ERROR_IO_ABSENT, NULL, false, IO_WIRING},

@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 #define RUNS   300
-#define CYCLES 600
+#define CYCLES 800
 #define DRIVES 3
 
 static struct fake_nodes nodes;
@@ -96,7 +96,7 @@ static void init(uint64_t seed)
     for (unsigned i = 0; i < DRIVES; i++)
         config.axis[i] = (struct drives_config_axis){
             .axis = (enum axis)i, .node = (uint8_t)(i + 1), .increments_per_mm = 1e5};
-    config.axis[0].homing = (struct drives_homing){.order = 1, .method = 37, .timeout_cycles = 50};
+    config.axis[0].homing = (struct drives_homing){.order = 1, .method = 37, .timeout_cycles = 200};
     memset(&nodes, 0, sizeof nodes);
     memset(control, 0, sizeof control);
     for (unsigned i = 0; i < 128; i++)

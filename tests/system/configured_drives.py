@@ -78,6 +78,8 @@ for name, data in (("short.bin", b"\1\0"), ("count.bin", struct.pack("<I", 2) + 
         file.write(data)
     status, _, err = run("drive.1.dcf=" + name)
     t.check(status == 2 and name in err and ("concise configuration" in err or "has no value" in err), name + " is none", err)
+status, _, err = run("drive.1.dcf=set_up.eds")
+t.check(status == 2 and "set_up.eds" in err and "a text" in err and "eds" in err, "a configuration in text form is told so", err)
 # A target takes them with its settings, where they are used in place.
 status, _, err = t.run("machine", "--pack", "-o", "machine.bin", "--set", FILES[0], "--set", FILES[2])
 t.check(status == 0 and open("1.bin", "rb").read() in open("machine.bin", "rb").read(), "settings for a target have them", err)

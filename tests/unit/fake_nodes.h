@@ -39,6 +39,7 @@ struct fake_nodes {
     struct fake_rule rule[FAKE_NODES_RULES];
     uint8_t mode[128]; /* shown as object 6061: what RPDO1 said */
     uint8_t mute;      /* this node says nothing; 0: none */
+    uint8_t wordless;  /* nor does this one say that it has booted */
     unsigned resets[128], starts[128], holds[128];
     unsigned written_before_hold; /* values to nodes that may have started themselves */
     unsigned guards[128];         /* guarding frames */
@@ -133,7 +134,8 @@ static inline void fake_nodes_take(struct fake_nodes *nodes, const struct can_fr
         nodes->resets[node] += frame->data[0] == NMT_RESET_COMMUNICATION;
         nodes->starts[node] += frame->data[0] == NMT_START;
         nodes->holds[node] += frame->data[0] == NMT_ENTER_PREOPERATIONAL;
-        if (frame->data[0] == NMT_RESET_COMMUNICATION && node != nodes->mute)
+        if (frame->data[0] == NMT_RESET_COMMUNICATION && node != nodes->mute &&
+            node != nodes->wordless)
             takt_nmt_write_heartbeat(fake_nodes_add(nodes), node, NMT_BOOTED);
     } else if (nmt_is_guard(frame, node)) {
         fake_nodes_guard(nodes, node);

@@ -64,10 +64,27 @@ static inline uint16_t bits_of_following(unsigned node)
 static unsigned deaf_edges;  /* how many fault resets come too early */
 static uint16_t before[128]; /* controlwords */
 
+static unsigned held_cycles; /* over which a fault reset has to stand */
+static unsigned slow_cycles; /* a controlword has to stand so long before its state is shown */
+static unsigned stands[128]; /* controlwords, for so many cycles */
+
+static inline bool stands_long_enough(unsigned node, uint16_t previous)
+{
+    const bool is_reset = shown[node] == CIA402_FAULT && control[node] & 0x80;
+    stands[node] = control[node] == previous ? stands[node] + 1 : 0;
+    return stands[node] >= (is_reset ? held_cycles : slow_cycles);
+}
+
 static inline enum cia402_state next_state(unsigned node)
 {
     const uint16_t previous = before[node];
     before[node] = control[node];
+    if (!stands_long_enough(node, previous))
+        return shown[node];
+    if (slow_cycles > 0)
+        stands[node] = 0;
+    if (held_cycles > 0 && shown[node] == CIA402_FAULT)
+        return control[node] & 0x80 ? CIA402_SWITCH_ON_DISABLED : CIA402_FAULT;
     if (shown[node] == CIA402_FAULT && control[node] & ~previous & 0x80 && deaf_edges > 0) {
         deaf_edges--;
         return CIA402_FAULT;
@@ -134,7 +151,8 @@ void setUp(void)
     refuses_starts = false;
     shown_inc = 0;
     follows_at_once = true;
-    deaf_edges = 0;
+    deaf_edges = held_cycles = slow_cycles = 0;
+    memset(stands, 0, sizeof stands);
     memset(before, 0, sizeof before);
     config = (struct drives_config){
         .count = DRIVES,

@@ -36,6 +36,14 @@ static void test_an_emergency_reads_back(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(emcy.vendor, read.vendor, 5);
 }
 
+static void test_every_code_of_the_class_of_no_error_is_none(void)
+{
+    const struct can_frame frame = {.id = 0x081, .length = 8, .data = {0x01, 0x00}};
+    struct emcy emcy;
+    TEST_ASSERT_TRUE(takt_emcy_read(&frame, &emcy));
+    TEST_ASSERT_EQUAL_HEX16(EMCY_NONE, emcy.code);
+}
+
 static void test_sync_and_short_frames_are_no_emergency(void)
 {
     struct can_frame frame = {.id = 0x080, .length = 8};
@@ -83,6 +91,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_an_emergency_is_the_frame_of_the_standard);
     RUN_TEST(test_an_emergency_reads_back);
+    RUN_TEST(test_every_code_of_the_class_of_no_error_is_none);
     RUN_TEST(test_sync_and_short_frames_are_no_emergency);
     RUN_TEST(test_codes_have_a_meaning_and_unknown_ones_that_of_their_class);
     RUN_TEST(test_sync_has_identifier_80_and_no_data);

@@ -134,18 +134,6 @@ static void test_a_drive_is_configured_while_it_is_pre_operational(void)
     TEST_ASSERT_EQUAL_UINT(0, nodes.written_before_hold);
 }
 
-static void test_a_fault_is_reset_by_as_many_edges_as_the_drive_needs(void)
-{
-    for (unsigned edges = 1; edges <= 5; edges += 2) {
-        setUp();
-        shown[2] = CIA402_FAULT;
-        deaf_edges = edges - 1;
-        run_start();
-        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
-        TEST_ASSERT_EQUAL_UINT(0, deaf_edges);
-    }
-}
-
 static void test_setpoints_wait_for_a_brake_and_not_for_a_drive_that_does_not_tell(void)
 {
     follows_at_once = false;
@@ -300,6 +288,15 @@ static void test_a_drive_that_boots_slowly_is_reset_once(void)
     TEST_ASSERT_EQUAL_UINT(0, nodes.resets[3] - 1);
 }
 
+static void test_a_drive_that_boots_without_a_word_is_asked(void)
+{
+    nodes.wordless = 3;
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_UINT(2, nodes.resets[3]);
+    TEST_ASSERT_EQUAL_UINT(1, nodes.holds[3]);
+}
+
 static void test_a_drive_that_boots_while_it_is_configured_is_configured_again(void)
 {
     takt_drives_init(&drives, &config);
@@ -436,7 +433,6 @@ int main(void)
     RUN_TEST(test_reports_are_not_held_back_and_sync_is_told);
     RUN_TEST(test_a_drive_without_the_identifier_of_sync_has_that_of_the_standard);
     RUN_TEST(test_a_drive_is_configured_while_it_is_pre_operational);
-    RUN_TEST(test_a_fault_is_reset_by_as_many_edges_as_the_drive_needs);
     RUN_TEST(test_setpoints_wait_for_a_brake_and_not_for_a_drive_that_does_not_tell);
     RUN_TEST(test_heartbeats_cycle_and_stops_are_configured);
     RUN_TEST(test_periods_of_any_length_are_told_as_value_and_power_of_ten);
@@ -455,6 +451,7 @@ int main(void)
     RUN_TEST(test_the_load_is_that_of_the_frames_that_were_found);
     RUN_TEST(test_reports_that_do_not_come_by_sync_come_by_a_timer_of_the_cycle);
     RUN_TEST(test_a_drive_that_boots_slowly_is_reset_once);
+    RUN_TEST(test_a_drive_that_boots_without_a_word_is_asked);
     RUN_TEST(test_a_drive_that_boots_while_it_is_configured_is_configured_again);
     RUN_TEST(test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_before_any_frame);
     RUN_TEST(test_the_load_is_that_of_the_worst_stuffed_frames);

@@ -72,7 +72,7 @@ static void test_an_attained_bit_from_before_does_not_count_while_the_drive_may_
     shown_bits[1] = 0x1400;
     takt_drives_init(&drives, &config);
     run_until_homing(1);
-    for (unsigned i = 0; i < 3; i++)
+    for (unsigned i = 0; i < 80; i++)
         cycle();
     shown_bits[1] = 0;
     for (unsigned i = 0; i < 100; i++)
@@ -93,6 +93,33 @@ static void test_a_drive_that_has_been_homed_is_told_to_stay_where_it_now_is(voi
         cycle();
     TEST_ASSERT_EQUAL_INT(DRIVES_STARTING, drives_get_state(&drives));
     TEST_ASSERT_EQUAL_INT32(-1500, target_of_3);
+}
+
+static void test_a_position_that_follows_its_statusword_later_makes_no_axis_jump(void)
+{
+    home_axes(0, 0, 1);
+    takt_drives_init(&drives, &config);
+    run_until_homing(3);
+    shown_bits[3] = 0x1400;
+    for (unsigned i = 0; i < 50; i++)
+        cycle();
+    shown_inc = -1500;
+    while (nodes.mode[3] != 8 && cycles_run < START_CYCLES)
+        cycle();
+    TEST_ASSERT_EQUAL_UINT(8, nodes.mode[3]);
+    TEST_ASSERT_EQUAL_INT32(-1500, target_of_3);
+}
+
+static void test_a_motor_that_swings_about_its_home_is_homed(void)
+{
+    home_axes(0, 0, 1);
+    takt_drives_init(&drives, &config);
+    run_until_homing(3);
+    for (unsigned i = 0; i < 220; i++) {
+        shown_bits[3] = i % 20 < 10 ? 0x1400 : 0x1000;
+        cycle();
+    }
+    TEST_ASSERT_EQUAL_UINT(8, nodes.mode[3]);
 }
 
 static void test_a_drive_that_takes_the_home_offset_for_its_position_is_told_that(void)
@@ -176,6 +203,70 @@ static void test_axes_that_are_homed_already_are_not_homed_again(void)
     TEST_ASSERT_TRUE(takt_drives_are_homed(&drives));
 }
 
+static void run_homed(void)
+{
+    home_axes(1, 1, 1);
+    config.homed = true;
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void test_a_drive_that_has_restarted_by_itself_has_lost_its_home(void)
+{
+    run_homed();
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
+    cycle();
+    TEST_ASSERT_FALSE(takt_drives_are_homed(&drives));
+}
+
+static void test_a_drive_that_restarts_while_its_alarm_stands_has_lost_its_home(void)
+{
+    run_homed();
+    takt_drives_stop_at_once(&drives, TAKT_ERROR_ENDED);
+    run_until(DRIVES_FAULTED);
+    TEST_ASSERT_TRUE(takt_drives_are_homed(&drives));
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
+    cycle();
+    TEST_ASSERT_FALSE(takt_drives_are_homed(&drives));
+}
+
+static void test_a_drive_that_is_not_heard_any_more_may_have_lost_its_home(void)
+{
+    run_homed();
+    nodes.mute = 3;
+    run_until(DRIVES_FAULTED);
+    for (unsigned i = 0; i < 400; i++)
+        cycle();
+    TEST_ASSERT_FALSE(takt_drives_are_homed(&drives));
+}
+
+static void test_a_start_that_is_broken_off_loses_no_home(void)
+{
+    home_axes(1, 1, 1);
+    config.homed = true;
+    nodes.wordless = 2;
+    takt_drives_init(&drives, &config);
+    for (unsigned i = 0; i < 20; i++)
+        cycle();
+    takt_drives_stop_at_once(&drives, TAKT_ERROR_ENDED);
+    takt_nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
+    nodes.mute = 3;
+    for (unsigned i = 0; i < 400; i++)
+        cycle();
+    TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
+    TEST_ASSERT_TRUE(takt_drives_are_homed(&drives));
+}
+
+static void test_drives_that_are_heard_all_along_keep_their_homes(void)
+{
+    run_homed();
+    shown[2] = CIA402_FAULT;
+    run_until(DRIVES_FAULTED);
+    for (unsigned i = 0; i < 400; i++)
+        cycle();
+    TEST_ASSERT_TRUE(takt_drives_are_homed(&drives));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -183,6 +274,8 @@ int main(void)
     RUN_TEST(test_axes_are_homed_in_their_order_and_those_of_one_order_together);
     RUN_TEST(test_an_attained_bit_from_before_does_not_count_while_the_drive_may_still_answer);
     RUN_TEST(test_a_drive_that_has_been_homed_is_told_to_stay_where_it_now_is);
+    RUN_TEST(test_a_position_that_follows_its_statusword_later_makes_no_axis_jump);
+    RUN_TEST(test_a_motor_that_swings_about_its_home_is_homed);
     RUN_TEST(test_a_drive_that_takes_the_home_offset_for_its_position_is_told_that);
     RUN_TEST(test_a_home_with_the_other_sign_is_a_fault_that_says_so);
     RUN_TEST(test_a_home_near_zero_has_no_sign);
@@ -190,5 +283,10 @@ int main(void)
     RUN_TEST(test_homing_that_does_not_end_is_given_up);
     RUN_TEST(test_a_fault_while_homing_stops_all_axes);
     RUN_TEST(test_axes_that_are_homed_already_are_not_homed_again);
+    RUN_TEST(test_a_drive_that_has_restarted_by_itself_has_lost_its_home);
+    RUN_TEST(test_a_drive_that_restarts_while_its_alarm_stands_has_lost_its_home);
+    RUN_TEST(test_a_drive_that_is_not_heard_any_more_may_have_lost_its_home);
+    RUN_TEST(test_a_start_that_is_broken_off_loses_no_home);
+    RUN_TEST(test_drives_that_are_heard_all_along_keep_their_homes);
     return UNITY_END();
 }

@@ -110,12 +110,49 @@ static void test_what_cannot_be_told_but_is_so_already_is_not_given_up(void)
     TEST_ASSERT_EQUAL_HEX32(0, takt_drives_get_given_up(&drives, AXIS_X));
 }
 
+static void test_a_mapping_that_is_refused_since_it_is_so_already_loses_nothing(void)
+{
+    static const uint32_t there[][2] = {{SDO_OBJECT(0x1600, 1), 0x60400010},
+                                        {SDO_OBJECT(0x1600, 2), 0x60600008},
+                                        {SDO_OBJECT(0x1A00, 1), 0x60410010},
+                                        {SDO_OBJECT(0x1A00, 2), 0x60640020}};
+    for (unsigned i = 0; i < sizeof there / sizeof there[0]; i++)
+        set_rule((struct fake_rule){
+            .object = there[i][0], .value = there[i][1], .write_code = SDO_ABORT_VALUE});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_HEX32(0, takt_drives_get_given_up(&drives, AXIS_X));
+}
+
 static void test_the_same_time_between_targets_in_other_units_is_taken(void)
 {
     set_read_only(SDO_OBJECT(0x60C2, 1), 10);
     set_read_only(SDO_OBJECT(0x60C2, 2), 0xFC);
     run_start();
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+/* 60C2:02 of -3, -4 or -5 for good. */
+static void test_a_time_between_targets_is_told_in_the_unit_that_the_drive_keeps(void)
+{
+    static const uint32_t units[][2] = {{0xFC, 10}, {0xFB, 100}};
+    for (unsigned i = 0; i < 2; i++) {
+        setUp();
+        set_read_only(SDO_OBJECT(0x60C2, 2), units[i][0]);
+        run_start();
+        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+        assert_told(1, SDO_OBJECT(0x60C2, 1), units[i][1]);
+        TEST_ASSERT_EQUAL_HEX32(0, takt_drives_get_given_up(&drives, AXIS_X));
+    }
+}
+
+static void test_a_time_that_has_no_value_in_the_unit_of_the_drive_is_refused_with_the_nearest(void)
+{
+    config.cycle_us = 2400;
+    set_read_only(SDO_OBJECT(0x60C2, 2), 0xFD);
+    assert_refused(TAKT_ERROR_DRIVE_PERIOD,
+                   "the drive of axis X (node 1) keeps 60C2, 2000 us between targets; cycle_us is "
+                   "2400");
 }
 
 static void test_a_drive_that_keeps_another_time_between_targets_is_refused(void)
@@ -239,7 +276,10 @@ int main(void)
     RUN_TEST(test_a_drive_that_cannot_follow_targets_is_refused);
     RUN_TEST(test_a_refusal_is_told_with_object_code_and_meaning);
     RUN_TEST(test_what_cannot_be_told_but_is_so_already_is_not_given_up);
+    RUN_TEST(test_a_mapping_that_is_refused_since_it_is_so_already_loses_nothing);
     RUN_TEST(test_the_same_time_between_targets_in_other_units_is_taken);
+    RUN_TEST(test_a_time_between_targets_is_told_in_the_unit_that_the_drive_keeps);
+    RUN_TEST(test_a_time_that_has_no_value_in_the_unit_of_the_drive_is_refused_with_the_nearest);
     RUN_TEST(test_a_drive_that_keeps_another_time_between_targets_is_refused);
     RUN_TEST(test_a_drive_that_cannot_report_in_every_cycle_is_refused);
     RUN_TEST(test_scaling_is_checked_by_the_travel_of_a_turn);

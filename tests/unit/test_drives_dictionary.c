@@ -47,6 +47,35 @@ static void test_keys_and_words_may_be_written_in_any_way(void)
     TEST_ASSERT_FALSE(row_of(0x6041, 0)->flags & OBJECT_TO_RPDO);
 }
 
+static void test_a_semicolon_behind_a_space_begins_a_comment(void)
+{
+    read_sheet(DRIVE "[6502] ; modes\nDataType=7\t; of 32 bits\nDefaultValue=0x80 ; cyclic\n"
+                     "[2000]\nDataType=9\nDefaultValue=a;b\n");
+    TEST_ASSERT_EQUAL_UINT(OBJECT_UNSIGNED32, row_of(0x6502, 0)->type);
+    TEST_ASSERT_EQUAL_HEX32(0x80, row_of(0x6502, 0)->initial);
+    TEST_ASSERT_EQUAL_STRING("a;b", row_of(0x2000, 0)->title);
+}
+
+static void test_a_text_of_two_bytes_a_character_is_read(void)
+{
+    static const char text[] = DRIVE "[6502]\r\nDataType=7\r\nDefaultValue=0x80\r\n";
+    for (unsigned low = 0; low < 2; low++) {
+        char wide[2 * sizeof text] = {(char)(low == 0 ? 0xFF : 0xFE),
+                                      (char)(low == 0 ? 0xFE : 0xFF)};
+        for (size_t i = 0; i + 1 < sizeof text; i++)
+            wide[2 + 2 * i + low] = text[i];
+        TEST_ASSERT_TRUE_MESSAGE(dictionary_read(&sheet, wide, sizeof wide, &wrong), wrong.text);
+        TEST_ASSERT_EQUAL_HEX32(0x80, row_of(0x6502, 0)->initial);
+        dictionary_free(&sheet);
+    }
+}
+
+static void test_lines_may_end_with_a_carriage_return_alone(void)
+{
+    read_sheet("[1000]\rDataType=7\r[6040]\rDataType=6\r[6502]\rDataType=7\rDefaultValue=2\r");
+    TEST_ASSERT_EQUAL_HEX32(2, row_of(0x6502, 0)->initial);
+}
+
 static void test_identifiers_count_from_the_node_id_on_either_side(void)
 {
     static const char *const forms[] = {"$NODEID+0x200", "$NodeID + 0x200", "0x200+$NODEID",
@@ -120,6 +149,9 @@ static void test_what_is_no_data_sheet_is_told_so(void)
         TEST_ASSERT_FALSE(dictionary_read(&sheet, texts[i], strlen(texts[i]), &wrong));
         TEST_ASSERT_NOT_NULL(strstr(wrong.text, i < 3 ? "[1000]" : "[6040]"));
     }
+    static const char xml[] = "\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<ISO15745ProfileContainer>";
+    TEST_ASSERT_FALSE(dictionary_read(&sheet, xml, sizeof xml - 1, &wrong));
+    TEST_ASSERT_NOT_NULL(strstr(wrong.text, "XDD"));
 }
 
 static void test_a_drive_of_a_sheet_has_its_objects_and_no_others(void)
@@ -309,6 +341,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_keys_and_words_may_be_written_in_any_way);
+    RUN_TEST(test_a_semicolon_behind_a_space_begins_a_comment);
+    RUN_TEST(test_a_text_of_two_bytes_a_character_is_read);
+    RUN_TEST(test_lines_may_end_with_a_carriage_return_alone);
     RUN_TEST(test_identifiers_count_from_the_node_id_on_either_side);
     RUN_TEST(test_a_compact_array_has_all_its_entries);
     RUN_TEST(test_a_default_counts_before_the_value_of_a_configuration);
