@@ -89,6 +89,14 @@ static void advance(struct hold_state *s, double w, double t)
     s->change += t * w;
 }
 
+/* The same for one cycle, with the same bits: products cost 40 instructions each on a Cortex-M4. */
+static void advance_cycle(struct hold_state *s, double w)
+{
+    s->at += s->rate + (0.5 * s->change + w * (1.0 / 6.0));
+    s->rate = maths_max(0.0, s->rate + (s->change + 0.5 * w));
+    s->change += w;
+}
+
 /* Goes on past the pieces that are fast enough for all rates to come. */
 static void pass_clear(struct hold *h, const struct path *path)
 {
@@ -270,7 +278,7 @@ static bool go_by(struct hold *h, double w)
 {
     struct hold_state place = h->place;
 
-    advance(&place, w, 1.0);
+    advance_cycle(&place, w);
     if (place.at < h->place.at) {
         return false;
     }
