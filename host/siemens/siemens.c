@@ -173,6 +173,10 @@ static void assigned_word(struct scan *s, const char *name)
         s->failed = true;
         return;
     }
+    if (strcmp(name, "D") == 0)
+        translate_wrong(s->t, NULL,
+                        "'D=' has an edge that is known only when the program runs, which is not "
+                        "supported: write D1 or D0");
     scan_skip(s);
     if (strcmp(name, "T") == 0 && *s->at == '"') {
         named_tool(s);

@@ -148,6 +148,8 @@ static void test_a_changed_tool_has_its_length(void)
     expect(DIALECT_SIEMENS, "T1 D1\nM3 S9\nT2\nM5\nT3 M4\n",
            "T1 G43  M6\nM3 S9 \nT2  M6 G43 M3\nM5 \nT3 M4  M6 G43\n");
     wrong("T1 D2\n", "'D2': tools have one edge here: make a tool of it, and call that by T");
+    wrong("T1 D=R1\n", "'D=' has an edge that is known only when the program runs, which is not "
+                       "supported: write D1 or D0");
 }
 
 static void test_variables_belong_to_their_program_and_whole_ones_are_whole(void)
