@@ -33,11 +33,12 @@ static void translate_travel(struct translator *t)
         (void)line_replace(l, rapid, "G1");
 }
 
-/* G28 X: where an axis is then counts as at the start, whatever G92 has said of it. */
+/* G28 X: what G92 has said of an axis is taken away; an offset of its system stays. */
 static void translate_home(struct translator *t)
 {
     struct line *l = &t->line;
     bool named = false;
+    char text[64];
 
     if (line_find_code(l, 'g', 280) == NULL)
         return;
@@ -47,7 +48,8 @@ static void translate_home(struct translator *t)
         if (l->word[i].kind > WORD_BARE || letter < 'x' || letter > 'z')
             continue;
         named = true;
-        translate_add(&t->behind, "G92 %c#<_abs_%c>", letter, letter);
+        registers_unshifted(letter, text, sizeof text);
+        translate_add(&t->behind, "G92 %s", text);
     }
     if (!named)
         translate_add(&t->behind, "G92.1");

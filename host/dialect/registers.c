@@ -112,6 +112,14 @@ static void translate_system(struct translator *t)
     }
 }
 
+void registers_unshifted(char axis, char *text, size_t size)
+{
+    const unsigned index = (unsigned)(strchr(LINE_AXES, axis) - LINE_AXES);
+
+    (void)snprintf(text, size, "%c[#<_%c>+#%u%s]", axis, axis, 5211U + index,
+                   index < 3 ? "/[1+24.4*#<_imperial>]" : "");
+}
+
 /* G50 X200 Z100, with a limit or without one, says where the tool is. */
 static void translate_limit(struct line *l, struct line_word *w)
 {
@@ -167,19 +175,42 @@ void registers_translate_unit(struct translator *t)
         (void)line_replace(&t->line, unit, line_code(unit) == 700 ? "G20" : "G21");
 }
 
-/* G92.1 X0 Y0 takes shifts away, and moves nothing. */
-static void translate_preset(struct line *l)
+/*
+ * G92.1 X0 Y0 Z0 takes shifts away, and moves nothing. On mills it does so of the axes that it
+ * names:
+ *
+ *     G92.1 X0        G92 x[#<_x>+#5211]      where X is without its shift, in the units in effect
+ */
+static void translate_preset(struct translator *t)
 {
-    for (unsigned i = 0; i < l->words && line_find_code(l, 'g', 921) != NULL; i++) {
-        if (l->word[i].kind == WORD_VALUE && strchr(LINE_AXES, l->word[i].letter) != NULL)
-            line_blank(l, &l->word[i]);
+    struct line *l = &t->line;
+    struct line_word *code = line_find_code(l, 'g', 921);
+    const bool all = line_find(l, 'x', 0) != NULL && line_find(l, 'y', 0) != NULL &&
+                     line_find(l, 'z', 0) != NULL;
+    const bool some = !t->survey.lathe && !all;
+
+    if (code == NULL || !line_has_axis(l))
+        return;
+    if (some)
+        (void)line_replace(l, code, "G92");
+    for (unsigned axis = 0; axis < strlen(LINE_AXES); axis++) {
+        struct line_word *w = line_find(l, LINE_AXES[axis], 0);
+        char text[64];
+
+        if (w == NULL)
+            continue;
+        registers_unshifted(LINE_AXES[axis], text, sizeof text);
+        if (some)
+            (void)line_replace(l, w, text);
+        else
+            line_blank(l, w);
     }
 }
 
 /* What a control has in registers. */
 void registers_translate(struct translator *t)
 {
-    translate_preset(&t->line);
+    translate_preset(t);
     translate_system(t);
     translate_radius(t);
     translate_length(t);

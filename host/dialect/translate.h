@@ -82,6 +82,8 @@ void registers_translate(struct translator *t);
 struct line_word *registers_speed_limit(struct line *l);
 /* G50 S, and G96 that waits for its S. */
 void registers_translate_speed(struct translator *t);
+/* x[#<_x>+#5211]: where the axis is when nothing shifts it, for a G92. */
+void registers_unshifted(char axis, char *text, size_t size);
 /* G70 and G71 as units. */
 void registers_translate_unit(struct translator *t);
 

@@ -4,6 +4,7 @@
  *     #5003 #5041                 #5422 #5420          where the tool is, work coordinates
  *     #5021                       #<_abs_x>            the same, machine coordinates
  *     #5221                       [#5221/[1+24.4*#<_imperial>]]    G54, in the units in effect
+ *     #[5221+20*#1]               the same, by the axis that it turns out to be
  *     #5221=#1                    G10 L2 P1 X[#1]      which counts at once
  *     #4003 #4109                 [90+#<_incremental>] #<_feed>    what is in effect
  *
@@ -26,6 +27,8 @@
 #define SYSTEM_FIRST   5221U
 #define SYSTEM_SIZE    20U
 #define SYSTEM_LAST    (SYSTEM_FIRST + 6U * SYSTEM_SIZE - 1U)
+#define OFFSETS_FIRST  5201U /* what cannot be read as it stands, nor given a value */
+#define OFFSETS        140U
 #define RUNNING_OFFSET 200U /* #4201 is #4001 of the block that runs */
 
 static const char axes[] = "xyzabc";
@@ -160,32 +163,11 @@ void variables_set(struct translator *t)
         struct place p;
 
         if (w->kind == WORD_ASSIGNED && find_next(&t->line, w->begin, &p) && p.at == w->begin &&
-            is_within(p.number, 5201, 140) && !set_offset(t, w, p.number))
+            is_within(p.number, OFFSETS_FIRST, OFFSETS) && !set_offset(t, w, p.number))
             translate_wrong(t, w,
                             "'#%u' cannot be given a value here: G10 L2 P1 X10 on a line of its "
                             "own sets G54",
                             (unsigned)p.number);
-    }
-}
-
-/* #[2000+#4]: numbers of variables that are only known when they are worked out. */
-static void refuse_worked_out(struct translator *t)
-{
-    const struct line *l = &t->line;
-
-    for (size_t at = 0; at + 1 < l->length && strchr("(;", l->text[at]) == NULL; at++) {
-        if (l->text[at] != '#' || l->text[at + 1] != '[')
-            continue;
-        for (size_t i = at + 2; i < l->length && l->text[i] != ']'; i++) {
-            const char before = l->text[i - 1];
-            struct place p = {.at = at};
-
-            if (!is_digit(l->text[i]) || is_digit(before) || before == '.' || before == '#')
-                continue;
-            p.number = line_whole((double)strtoul(&l->text[i], NULL, 10));
-            if (!is_known(p.number, false))
-                refuse(t, &p);
-        }
     }
 }
 
@@ -203,13 +185,77 @@ static size_t close_of(const struct line *l, size_t at)
     return 0;
 }
 
+static void put(struct translator *t, struct line_word *w, const char *text)
+{
+    if (strlen(text) + t->line.length <= CALCULATION_MAX)
+        (void)line_replace(&t->line, w, text);
+    else
+        translate_wrong(t, w,
+                        "this line is too long for what stands for a part of it in LinuxCNC: work "
+                        "that out on a line of its own");
+}
+
+/* Which variable it may be, by the numbers in the brackets. */
+static uint32_t look_worked_out(struct translator *t, size_t at)
+{
+    const struct line *l = &t->line;
+    uint32_t offset = 0;
+
+    for (size_t i = at + 2; i < l->length && l->text[i] != ']'; i++) {
+        const char before = l->text[i - 1];
+        struct place p = {.at = at};
+
+        if (!is_digit(l->text[i]) || is_digit(before) || before == '.' || before == '#')
+            continue;
+        p.number = line_whole((double)strtoul(&l->text[i], NULL, 10));
+        if (!is_known(p.number, false))
+            refuse(t, &p);
+        offset = is_within(p.number, OFFSETS_FIRST, OFFSETS) ? p.number : offset;
+    }
+    return offset;
+}
+
+/*
+ * #[2000+#4]: numbers of variables that are only known when they are worked out. Of an offset
+ *
+ *     #[e]       [#[e]/[1+24.4*#<_imperial>*[[[e]-5221] MOD 20 LT 3]]]    X, Y and Z have units
+ */
+static void translate_worked_out(struct translator *t)
+{
+    struct line *l = &t->line;
+    char text[LINE_MAX_BYTES];
+
+    for (size_t at = 0; at + 1 < l->length && strchr("(;", l->text[at]) == NULL; at++) {
+        if (l->text[at] != '#' || l->text[at + 1] != '[' || look_worked_out(t, at) == 0)
+            continue;
+        const size_t end = close_of(l, at + 1);
+        const int length = (int)(end - at - 1);
+        struct line_word w = {.begin = (uint16_t)at, .end = (uint16_t)end};
+
+        if (end == 0)
+            return;
+        if (line_is_assigned(l, end)) {
+            translate_wrong(t, &w,
+                            "an offset of a number that is worked out cannot be given a value "
+                            "here: G10 L2 P#1 X10 on a line of its own sets one");
+            return;
+        }
+        (void)snprintf(text, sizeof text, "[#%.*s/[1+24.4*#<_imperial>*[[%.*s-%u] MOD %u LT 3]]]",
+                       length, &l->text[at + 1], length, &l->text[at + 1], SYSTEM_FIRST,
+                       SYSTEM_SIZE);
+        put(t, &w, text);
+        at += strlen(text) - 1;
+    }
+}
+
 /*
  * FIX goes towards 0 and FUP away from it; those of LinuxCNC go down and up:
  *
  *     FIX[e]     [FIX[ABS[e]]*[1-2*[[e] LT 0]]]
  */
-static void round_by_sign(struct line *l)
+static void round_by_sign(struct translator *t)
 {
+    struct line *l = &t->line;
     char text[LINE_MAX_BYTES];
 
     for (size_t at = 0; at + 4 < l->length && strchr("(;", l->text[at]) == NULL; at++) {
@@ -222,11 +268,9 @@ static void round_by_sign(struct line *l)
 
         if (end <= at + 4 || is_done)
             continue;
-        const int length = snprintf(text, sizeof text, "[%.3s[ABS%.*s]*[1-2*[%.*s LT 0]]]", name,
-                                    (int)(end - at - 3), name + 3, (int)(end - at - 3), name + 3);
-
-        if ((size_t)length + l->length <= CALCULATION_MAX)
-            (void)line_replace(l, &w, text);
+        (void)snprintf(text, sizeof text, "[%.3s[ABS%.*s]*[1-2*[%.*s LT 0]]]", name,
+                       (int)(end - at - 3), name + 3, (int)(end - at - 3), name + 3);
+        put(t, &w, text);
     }
 }
 
@@ -236,8 +280,8 @@ void variables_translate(struct translator *t)
     struct place p = {0};
     char text[64];
 
-    refuse_worked_out(t);
-    round_by_sign(l);
+    translate_worked_out(t);
+    round_by_sign(t);
     for (size_t at = 0; find_next(l, at, &p); at = p.at + 1) {
         struct line_word w = {.begin = (uint16_t)p.at, .end = (uint16_t)(p.at + p.length)};
         const bool is_given = line_is_assigned(l, p.at + p.length);

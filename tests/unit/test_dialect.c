@@ -108,7 +108,8 @@ static void test_axes_that_are_named_alone_go_to_their_reference(void)
 {
     expect(DIALECT_GRBL, "G28 X Y\nG91 G28 Z\nG28 X1\n",
            "G28 X0 Y0 G91\n|G90\nG91 G28 Z0\nG28 X1\n");
-    expect(DIALECT_MARLIN, "G28 X1 W\n", "G28 X0   G91\n|G92 x#<_abs_x>\n|G90\n");
+    expect(DIALECT_MARLIN, "G28 X1 W\n",
+           "G28 X0   G91\n|G92 x[#<_x>+#5211/[1+24.4*#<_imperial>]]\n|G90\n");
 }
 
 static void test_a_rapid_beside_a_reference_holds_from_the_next_line_on(void)

@@ -70,6 +70,8 @@ static void test_variables_of_the_control_have_other_names(void)
     expect(DIALECT_HAAS, "G#4003 F#4109 G#4214\n",
            "G[90+#<_incremental>] F#<_feed> "
            "G[#<_coord_system>/10]\n");
+    expect(DIALECT_FANUC, "#1=#[5221+20*#[2]]\n",
+           "#1=[#[5221+20*#[2]]/[1+24.4*#<_imperial>*[[[5221+20*#[2]]-5221] MOD 20 LT 3]]]\n");
     expect(DIALECT_FANUC, "#1=#5242+#5244\n", "#1=[[#5242" SUM "+#5244]\n");
     expect(DIALECT_GRBL, "#1=#5041\n", "#1=#5041\n");
     /* the same in LinuxCNC, or only kept */
@@ -84,6 +86,8 @@ static void test_offsets_that_are_given_a_value_count_at_once(void)
           "'#5221' cannot be given a value here: G10 L2 P1 X10 on a line of its own sets G54");
     wrong("#5201=2.\n",
           "'#5201' cannot be given a value here: G10 L2 P1 X10 on a line of its own sets G54");
+    wrong("#[5221+#1]=2.\n", "an offset of a number that is worked out cannot be given a value "
+                             "here: G10 L2 P#1 X10 on a line of its own sets one");
 }
 
 static void test_variables_that_are_not_known_are_told(void)
@@ -138,10 +142,15 @@ static void test_axis_words_of_codes_that_move_nothing_are_no_places(void)
 {
     expect(DIALECT_FANUC, "G0 X5\nG50.1 X0 Y0\nG22 X9. I-9. M8\nX6\n",
            "G0 X5\n           \n             M8\nX6\n");
-    expect(DIALECT_FANUC, "G0 X5\nG92.1 X0 Y0\n", "G0 X5\nG92.1      \n");
+    expect(DIALECT_FANUC, "G0 X5\nG92.1 Z0 X0 Y0\n", "G0 X5\nG92.1         \n");
     expect(DIALECT_MACH3, "G0 X5\nG50.1 X0\nG5.1 Q2 X0 Y0\n", "G0 X5\n        \n             \n");
     expect(DIALECT_FANUC, "G50 X9. Z5. S2000\nG50 X8. Z4.\nG50 S1000\nG96 S9\n",
            "G18 G7 G95\n|G92 X9. Z5.      \nG92 X8. Z4.\n         \nG96 S9 D1000\n");
+}
+
+static void test_shifts_are_taken_away_of_the_axes_that_are_named(void)
+{
+    expect(DIALECT_FANUC, "G92.1 X0 B0\n", "G92   x[#<_x>+#5211" SUM " b[#<_b>+#5215]\n");
 }
 
 static void test_what_looks_like_an_exponent_is_the_extruder_of_a_printer(void)
@@ -154,7 +163,8 @@ static void test_printers_travel_at_their_feed_and_count_from_home(void)
 {
     expect(DIALECT_MARLIN, "G0 X1\nG0 X2 F9\nG0 X3\nG1 X4\n", "G0 X1\nG1 X2 F9\nG1 X3\nG1 X4\n");
     expect(DIALECT_MARLIN, "G28\n", "G28\n|G92.1\n");
-    expect(DIALECT_MARLIN, "G28 X\n", "G28 X0 G91\n|G92 x#<_abs_x>\n|G90\n");
+    expect(DIALECT_MARLIN, "G28 X\n",
+           "G28 X0 G91\n|G92 x[#<_x>+#5211/[1+24.4*#<_imperial>]]\n|G90\n");
 }
 
 static void test_fix_and_fup_go_by_the_sign(void)
@@ -163,6 +173,9 @@ static void test_fix_and_fup_go_by_the_sign(void)
     expect(DIALECT_HAAS, "X[FUP[#1-[2]]]\n", "X[[FUP[ABS[#1-[2]]]*[1-2*[[#1-[2]] LT 0]]]]\n");
     expect(DIALECT_FANUC, "#1=FIX[ABS[#2]] (FIX[1])\n#1=FIX\n#1=FIX[2\n",
            "#1=FIX[ABS[#2]] (FIX[1])\n#1=FIX\n#1=FIX[2\n");
+    wrong("#1=FIX[#2+100000000*1+100000000*1+100000000*1+100000000*1+100000000*1+100000000*1+1]\n",
+          "this line is too long for what stands for a part of it in LinuxCNC: work that out on a "
+          "line of its own");
     expect(DIALECT_GRBL, "#1=FIX[#2]\n", "#1=FIX[#2]\n");
 }
 
@@ -188,6 +201,7 @@ int main(void)
     RUN_TEST(test_lathes_begin_with_feeds_per_turn);
     RUN_TEST(test_codes_by_other_names);
     RUN_TEST(test_axis_words_of_codes_that_move_nothing_are_no_places);
+    RUN_TEST(test_shifts_are_taken_away_of_the_axes_that_are_named);
     RUN_TEST(test_what_looks_like_an_exponent_is_the_extruder_of_a_printer);
     RUN_TEST(test_printers_travel_at_their_feed_and_count_from_home);
     RUN_TEST(test_fix_and_fup_go_by_the_sign);
