@@ -173,10 +173,6 @@ static void assigned_word(struct scan *s, const char *name)
         s->failed = true;
         return;
     }
-    if (strcmp(name, "D") == 0)
-        translate_wrong(s->t, NULL,
-                        "'D=' has an edge that is known only when the program runs, which is not "
-                        "supported: write D1 or D0");
     scan_skip(s);
     if (strcmp(name, "T") == 0 && *s->at == '"') {
         named_tool(s);
@@ -295,6 +291,14 @@ static bool take_edge(struct scan *s, const char *name)
     return true;
 }
 
+static void refuse_edge(struct scan *s, const char *name)
+{
+    if (strcmp(name, "D") == 0)
+        translate_wrong(s->t, NULL,
+                        "'D=' has an edge that is known only when the program runs, which is not "
+                        "supported: write D1 or D0");
+}
+
 static void word(struct scan *s)
 {
     char name[NAME_MAX_];
@@ -304,6 +308,7 @@ static void word(struct scan *s)
         return;
     }
     if (scan_take(s, "=")) {
+        refuse_edge(s, name);
         assigned_word(s, name);
     } else if (scan_return(s, name)) {
         skip_arguments(s);
