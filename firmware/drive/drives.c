@@ -210,6 +210,8 @@ void takt_drives_raise(struct drives *d, unsigned index, enum takt_error error, 
     d->axis[index].lost = d->axis[index].lost || !can_follow(&d->axis[index], error);
     if (error == TAKT_ERROR_DRIVE_REBOOTED)
         takt_drives_doubt_home(d, index);
+    if (error == TAKT_ERROR_DRIVE_ABSENT)
+        d->homed = false;
     name_axis(d, index, &word);
     raise(d, index, &word, error, value, meaning);
 }

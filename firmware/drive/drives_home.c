@@ -66,12 +66,15 @@ void takt_drives_doubt_home(struct drives *d, unsigned index)
     d->homed = d->homed && !d->axis[index].started;
 }
 
-/* So may one that is not heard any more: it may be switched off. */
+/* So may one that is not heard any more; where there are no heartbeats, by its reports. */
 void takt_drives_doubt_homes(struct drives *d)
 {
-    for (unsigned i = 0; i < d->count; i++)
-        if (drives_heartbeat_age_cycles(d, &d->axis[i]) > d->heartbeat_age_max_cycles)
+    for (unsigned i = 0; i < d->count; i++) {
+        const struct drives_axis *axis = &d->axis[i];
+        if (d->heartbeat_ms > 0 ? drives_heartbeat_age_cycles(d, axis) > d->heartbeat_age_max_cycles
+                                : drives_is_silent(d, axis))
             takt_drives_doubt_home(d, i);
+    }
 }
 
 static bool is_late(const struct drives *d)

@@ -240,6 +240,32 @@ static void test_a_drive_that_is_not_heard_any_more_may_have_lost_its_home(void)
     TEST_ASSERT_FALSE(takt_drives_are_homed(&drives));
 }
 
+static void test_so_may_one_without_heartbeats(void)
+{
+    config.heartbeat_ms = 0;
+    run_homed();
+    takt_drives_stop_at_once(&drives, TAKT_ERROR_ENDED);
+    run_until(DRIVES_FAULTED);
+    for (unsigned i = 0; i < 400; i++)
+        cycle();
+    TEST_ASSERT_TRUE(takt_drives_are_homed(&drives));
+    nodes.mute = 3;
+    for (unsigned i = 0; i < 400; i++)
+        cycle();
+    TEST_ASSERT_FALSE(takt_drives_are_homed(&drives));
+}
+
+static void test_a_drive_that_does_not_answer_any_more_may_have_lost_its_home(void)
+{
+    home_axes(1, 1, 1);
+    config.homed = true;
+    nodes.mute = 3;
+    takt_drives_init(&drives, &config);
+    run_until(DRIVES_FAULTED);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_ABSENT, takt_drives_get_fault(&drives)->code);
+    TEST_ASSERT_FALSE(takt_drives_are_homed(&drives));
+}
+
 static void test_a_start_that_is_broken_off_loses_no_home(void)
 {
     home_axes(1, 1, 1);
@@ -286,6 +312,8 @@ int main(void)
     RUN_TEST(test_a_drive_that_has_restarted_by_itself_has_lost_its_home);
     RUN_TEST(test_a_drive_that_restarts_while_its_alarm_stands_has_lost_its_home);
     RUN_TEST(test_a_drive_that_is_not_heard_any_more_may_have_lost_its_home);
+    RUN_TEST(test_so_may_one_without_heartbeats);
+    RUN_TEST(test_a_drive_that_does_not_answer_any_more_may_have_lost_its_home);
     RUN_TEST(test_a_start_that_is_broken_off_loses_no_home);
     RUN_TEST(test_drives_that_are_heard_all_along_keep_their_homes);
     return UNITY_END();
