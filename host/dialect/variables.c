@@ -4,6 +4,7 @@
  *     #5003 #5041                 #5422 #5420          where the tool is, work coordinates
  *     #5021                       #<_abs_x>            the same, machine coordinates
  *     #5221                       [#5221/[1+24.4*#<_imperial>]]    G54, in the units in effect
+ *     #5041 (a lathe)             [2*#5420]            X is a diameter
  *     #[5221+20*#1]               the same, by the axis that it turns out to be
  *     #5221=#1                    G10 L2 P1 X[#1]      which counts at once
  *     #4003 #4109                 [90+#<_incremental>] #<_feed>    what is in effect
@@ -84,6 +85,14 @@ static bool is_within(uint32_t number, uint32_t first, uint32_t count)
     return number >= first && number < first + count;
 }
 
+/* Where X is, or what shifts it: lathes have diameters there. */
+static bool is_x(uint32_t number)
+{
+    return number == 5001U || number == 5021U || number == 5041U || number == 5061U ||
+           (number >= SYSTEM_FIRST && number <= SYSTEM_LAST &&
+            (number - SYSTEM_FIRST) % SYSTEM_SIZE == 0);
+}
+
 static void offset_text(uint32_t number, char *text, size_t size)
 {
     const uint32_t axis = (number - SYSTEM_FIRST) % SYSTEM_SIZE;
@@ -112,6 +121,8 @@ static bool read_text(uint32_t number, char *text, size_t size)
         (void)snprintf(text, size, "#%u", (unsigned)(5420U + number - 5041U));
     else if (is_within(number, 5021, POSITIONS))
         (void)snprintf(text, size, "#<_abs_%c>", axes[number - 5021U]);
+    else if (number == 5061U)
+        (void)snprintf(text, size, "#%u", (unsigned)number);
     else if (number >= SYSTEM_FIRST && number <= SYSTEM_LAST)
         offset_text(number, text, size);
     else if (mode != NULL)
@@ -128,6 +139,19 @@ static bool is_known(uint32_t number, bool is_given)
     const bool more = number >= 20000 || is_within(number, 10000, 1000);
 
     return number <= OWN_LAST || linuxcnc || more || is_within(number, 3000, is_given ? 1000 : 1);
+}
+
+static void put_variable(struct translator *t, struct place *p, const char *text)
+{
+    struct line_word w = {.begin = (uint16_t)p->at, .end = (uint16_t)(p->at + p->length)};
+    char twice[80];
+
+    if (t->survey.lathe && is_x(p->number)) {
+        (void)snprintf(twice, sizeof twice, "[2*%s]", text);
+        text = twice;
+    }
+    (void)line_replace(&t->line, &w, text);
+    p->at += strlen(text) - 1;
 }
 
 static void refuse(struct translator *t, const struct place *p)
@@ -234,10 +258,11 @@ static void translate_worked_out(struct translator *t)
 
         if (end == 0)
             return;
-        if (line_is_assigned(l, end)) {
-            translate_wrong(t, &w,
-                            "an offset of a number that is worked out cannot be given a value "
-                            "here: G10 L2 P#1 X10 on a line of its own sets one");
+        if (line_is_assigned(l, end) || t->survey.lathe) {
+            translate_wrong(
+                t, &w,
+                "an offset of a number that is worked out cannot be given a value here, nor "
+                "read on lathes: G10 L2 P#1 X10 sets one");
             return;
         }
         (void)snprintf(text, sizeof text, "[#%.*s/[1+24.4*#<_imperial>*[[%.*s-%u] MOD %u LT 3]]]",
@@ -283,12 +308,10 @@ void variables_translate(struct translator *t)
     translate_worked_out(t);
     round_by_sign(t);
     for (size_t at = 0; find_next(l, at, &p); at = p.at + 1) {
-        struct line_word w = {.begin = (uint16_t)p.at, .end = (uint16_t)(p.at + p.length)};
         const bool is_given = line_is_assigned(l, p.at + p.length);
 
         if (!is_given && read_text(p.number, text, sizeof text)) {
-            (void)line_replace(l, &w, text);
-            p.at += strlen(text) - 1;
+            put_variable(t, &p, text);
         } else if (!is_known(p.number, is_given)) {
             refuse(t, &p);
         }

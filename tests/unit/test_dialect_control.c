@@ -78,6 +78,17 @@ static void test_variables_of_the_control_have_other_names(void)
     expect(DIALECT_FANUC, "#1=#5061\n#3003=1\n#999=#100\n", "#1=#5061\n#3003=1\n#999=#100\n");
 }
 
+#define WORKED_OUT                                                                                 \
+    "an offset of a number that is worked out cannot be given a value here, nor read on lathes: "  \
+    "G10 L2 P#1 X10 sets one"
+
+static void test_places_and_offsets_of_lathes_are_diameters(void)
+{
+    expect(DIALECT_FANUC, "G50 S9\n#1=#5041+#5042+#5221\n#2=#5021*#5061\n",
+           "G18 G7 G95\n#1=[[2*#5420]+#5421+[2*[#5221" SUM "]]\n#2=[[2*#<_abs_x>]*[2*#5061]]\n");
+    wrong("G50 S9\n#1=#[5221+#2]\n", WORKED_OUT);
+}
+
 static void test_offsets_that_are_given_a_value_count_at_once(void)
 {
     expect(DIALECT_FANUC, "#5241=#1+2\nN1 #5223=1.\n",
@@ -86,8 +97,7 @@ static void test_offsets_that_are_given_a_value_count_at_once(void)
           "'#5221' cannot be given a value here: G10 L2 P1 X10 on a line of its own sets G54");
     wrong("#5201=2.\n",
           "'#5201' cannot be given a value here: G10 L2 P1 X10 on a line of its own sets G54");
-    wrong("#[5221+#1]=2.\n", "an offset of a number that is worked out cannot be given a value "
-                             "here: G10 L2 P#1 X10 on a line of its own sets one");
+    wrong("#[5221+#1]=2.\n", WORKED_OUT);
 }
 
 static void test_variables_that_are_not_known_are_told(void)
@@ -194,6 +204,7 @@ int main(void)
     RUN_TEST(test_more_systems_are_set_where_they_are_here);
     RUN_TEST(test_values_of_tools_are_those_that_r_says);
     RUN_TEST(test_variables_of_the_control_have_other_names);
+    RUN_TEST(test_places_and_offsets_of_lathes_are_diameters);
     RUN_TEST(test_offsets_that_are_given_a_value_count_at_once);
     RUN_TEST(test_variables_that_are_not_known_are_told);
     RUN_TEST(test_names_are_no_operators);
