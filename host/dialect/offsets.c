@@ -108,7 +108,9 @@ static void translate_tool(struct translator *t, struct line_word *code, unsigne
         leave_out(l);
         return;
     }
-    if (r == NULL || is_wear || (adds && line_find_code(l, 'g', 900) == NULL))
+    if (t->survey.lathe) /* R is the radius of the nose there */
+        translate_wrong(t, code, "G10 L%u of a lathe: use the tool table", what);
+    else if (r == NULL || is_wear || (adds && line_find_code(l, 'g', 900) == NULL))
         translate_wrong(t, code,
                         "G10 L%u sets a value of a tool by R in G90; wear, and what is "
                         "added in G91, is not supported: set the sum",

@@ -58,6 +58,7 @@ static void test_values_of_tools_are_those_that_r_says(void)
     wrong("G91\nG10 L10 P1 R1.\n", "G10 L10" TOLD);
     wrong("G10 L10 P1 Z1.\n", "G10 L10" TOLD);
     wrong("G91\nG90 G10 L10 P1 R1.\n", "");
+    wrong("G50 S9\nG10 L10 P1 R.4\n", "G10 L10 of a lathe: use the tool table");
     wrong_of(DIALECT_HAAS, "G10 L12 P1 R5.\n",
              "G10 L12: a setting of the control says whether R is a radius or a diameter: use the "
              "tool table");
