@@ -3,6 +3,7 @@
  * turning.
  */
 #include "dialect/translate.h"
+#include "lathe/lathe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -135,6 +136,23 @@ struct line_word *registers_speed_limit(struct line *l)
     struct line_word *other = line_find_code(l, 'g', 920);
 
     return w == NULL && line_find(l, 's', 0) != NULL && !line_has_axis(l) ? other : w;
+}
+
+/* Is it a program of a lathe? */
+void registers_survey(struct survey *s, struct line *l)
+{
+    const bool limit = registers_speed_limit(l) != NULL && line_find(l, 's', 0) != NULL;
+
+    s->lathe = s->lathe || turning_tells(l) || (limit && line_find_code(l, 'g', 500) != NULL) ||
+               (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
+    s->limits_speed = s->limits_speed || limit;
+    s->lies_flat = s->lies_flat || line_find_code(l, 'g', 170) != NULL;
+}
+
+/* G92 S alone is of mills as well, which say G17. */
+void registers_survey_end(struct survey *s)
+{
+    s->lathe = s->lathe || (s->limits_speed && !s->lies_flat);
 }
 
 /*

@@ -436,9 +436,7 @@ static void survey_line(void *translator, const char *bytes, size_t length)
     series_survey(&t->survey, l);
     t->survey.rotary = t->survey.rotary || upright_turns(l);
     t->survey.whole = t->survey.whole || turning_is_whole(l);
-    t->survey.lathe = t->survey.lathe || turning_tells(l) ||
-                      (registers_speed_limit(l) != NULL && line_find(l, 's', 0) != NULL) ||
-                      (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
+    registers_survey(&t->survey, l);
 }
 
 struct guess {
@@ -481,6 +479,7 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     t->across = 'k';
     t->absolute = is_absolute(t);
     each_line(bytes, length, survey_line, t);
+    registers_survey_end(&t->survey);
     if (t->survey.lathe)
         t->across = 'j';
     each_line(bytes, length, translate_line, t);

@@ -78,6 +78,9 @@ void upright_translate(struct translator *t);
 
 /* Systems, and what T, D, H and compensation leave for later lines. */
 void registers_translate(struct translator *t);
+/* Whether the program is of a lathe: by each line, and at its end. */
+void registers_survey(struct survey *s, struct line *l);
+void registers_survey_end(struct survey *s);
 /* G50, or G92 with S and no axis. NULL: no such line. */
 struct line_word *registers_speed_limit(struct line *l);
 /* G50 S, and G96 that waits for its S. */

@@ -59,9 +59,11 @@ struct turned {
 /* What has been seen of the whole text before. */
 struct survey {
     bool lathe;
-    bool rotary;   /* it has words of rotary axes */
-    bool absolute; /* a lathe whose G90 is that of mills: it has G91 or G95 */
-    bool whole;    /* turning cycles write distances in whole thousandths */
+    bool limits_speed; /* it has G50 S or G92 S, */
+    bool lies_flat;    /* and it has a G17 */
+    bool rotary;       /* it has words of rotary axes */
+    bool absolute;     /* a lathe whose G90 is that of mills: it has G91 or G95 */
+    bool whole;        /* turning cycles write distances in whole thousandths */
     unsigned programs, macros;
     uint32_t program[TRANSLATE_PROGRAMS_MAX]; /* O1000 */
     uint32_t macro[TRANSLATE_PROGRAMS_MAX];   /* called by G65 */

@@ -22,6 +22,10 @@ static void test_the_limit_of_speed_can_stand_beside_g92(void)
     TEST_ASSERT_EQUAL_INT(DIALECT_LINUXCNC, guess("G92 X0 S1300").dialect);
     expect(DIALECT_FANUC, "G92 S1300\nG96 S100 M3\n", "G18 G7 G95\nG96 S100 M3 D1300\n");
     expect(DIALECT_FANUC, "G92 X0 S13\n", "G92 X0 S13\n");
+    /* of a mill, whose X is no diameter and whose F no feed per turn */
+    expect(DIALECT_FANUC, "G21 G17\nG92 S1300\nG96 S100 M3\nG1 X5 F9\n",
+           "G21 G17\n         \nG96 S100 M3 D1300\nG1 X5 F9\n");
+    expect(DIALECT_FANUC, "G50 S13\nG17\n", "G18 G7 G95\nG17\n");
 }
 
 static void test_cycles_without_r_drill_from_where_the_tool_is(void)
