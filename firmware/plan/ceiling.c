@@ -114,28 +114,22 @@ static bool is_near(const struct builder *s, uint64_t at)
  * or land at its start under the ceiling made before; to others it is found anew until all of the
  * span is known.
  */
-static struct span_window find_window(const struct builder *s, uint32_t index)
+static uint32_t promise_window(struct builder *s, uint32_t index)
 {
     const struct ceiling_request *request = s->request;
     const struct path_block *b = path_at(s->path, index);
     const bool inside = index == request->first && (int64_t)(request->reference - b->start) > 0;
+    bool known = b->cycles_known;
+    uint32_t cycles = b->cycles;
 
     if (inside || (int64_t)(request->span - b->start) >= 0) {
-        return (struct span_window){request->cycles, b->cycles_known};
+        cycles = request->cycles;
+    } else if (cycles == 0 || !(known || is_near(s, b->start))) {
+        cycles = takt_span_window(s->path, request, index, &known);
     }
-    if (b->cycles > 0 && (b->cycles_known || is_near(s, b->start))) {
-        return (struct span_window){b->cycles, b->cycles_known};
-    }
-    return takt_span_window(s->path, request, index);
-}
-
-static uint32_t promise_window(struct builder *s, uint32_t index)
-{
-    const struct span_window window = find_window(s, index);
-    TAKT_ASSERT(window.cycles <= takt_ramp_profile_cycles_max(s->path->limits.profile));
-
-    takt_ring_promise(&s->path->ring, index, window.cycles, window.known);
-    return window.cycles;
+    TAKT_ASSERT(cycles <= takt_ramp_profile_cycles_max(s->path->limits.profile));
+    takt_ring_promise(&s->path->ring, index, cycles, known);
+    return cycles;
 }
 
 /* The span that begins with the block at index. */

@@ -366,8 +366,8 @@ static uint32_t best_box(const struct span *s)
     return best;
 }
 
-struct span_window takt_span_window(const struct path *path, const struct ceiling_request *request,
-                                    uint32_t index)
+uint32_t takt_span_window(const struct path *path, const struct ceiling_request *request,
+                          uint32_t index, bool *known)
 {
     struct span s = {
         .cycle_s = path->limits.cycle_s, .profile = path->limits.profile, .feed_end = -1.0};
@@ -376,5 +376,6 @@ struct span_window takt_span_window(const struct path *path, const struct ceilin
     TAKT_ASSERT(s.count > 0);
     s.feed_start = maths_min(feed_at_start(path, request, index), s.part[0].feed);
     s.feed_end = maths_min(s.feed_end, s.part[s.count - 1].feed);
-    return (struct span_window){best_box(&s), is_known(&s)};
+    *known = is_known(&s);
+    return best_box(&s);
 }

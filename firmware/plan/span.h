@@ -9,11 +9,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct span_window {
-    uint32_t cycles; /* of the first averaging box */
-    bool known;      /* found with all of the span known: more blocks do not change it */
-};
-
 /* Does a span end with a block, at a stop? */
 bool takt_span_stops(const struct path *path, uint32_t index);
 
@@ -21,11 +16,12 @@ bool takt_span_stops(const struct path *path, uint32_t index);
 bool takt_span_lands(const struct path *path, uint32_t index);
 
 /*
- * The window for the span that begins with the motion at index: the one with which the span is
- * predicted to take the least time, as far as it is known; of a span that begins behind the closed
- * blocks its first block is. Feeds count as programmed: the overrides do not change the window.
+ * Cycles of the first averaging box for the span that begins with the motion at index: those with
+ * which the span is predicted to take the least time, as far as it is known; of a span that begins
+ * behind the closed blocks its first block is. Feeds count as programmed: the overrides do not
+ * change the window. known: all of the span is, and more blocks do not change it.
  */
-struct span_window takt_span_window(const struct path *path, const struct ceiling_request *request,
-                                    uint32_t index);
+uint32_t takt_span_window(const struct path *path, const struct ceiling_request *request,
+                          uint32_t index, bool *known);
 
 #endif
