@@ -8,10 +8,16 @@
 
 #include <string.h>
 
+/* What all axes of a piece multiply their differences by: 1/2d, 1/2d^2, 1/6d^3. */
+struct factors {
+    double first, second, third;
+};
+
 /*
  * One axis, of four control points. An axis that does not move is where they are, to the last bit.
  */
-static void set_axis(struct curve *c, int i, const struct point control[4], double inverse_mm)
+static void set_axis(struct curve *c, int i, const struct point control[4],
+                     const struct factors *by)
 {
     const double c0 = control[0].at[i];
     const double c1 = control[1].at[i];
@@ -24,16 +30,14 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
         return;
     }
     const double second = (c0 - c1) + (c2 - c1);
-    const double half = 0.5 * inverse_mm;
     const double second_end = (c1 - c2) + (c3 - c2);
 
     c->spline.moves |= (unsigned char)(1U << i);
     c->start.at[i] = c1 + second * (1.0 / 6.0);
     c->end.at[i] = c2 + second_end * (1.0 / 6.0);
-    c->slope.at[i] = (c2 - c0) * half;
-    c->spline.square.at[i] = second * (half * inverse_mm);
-    c->spline.cube.at[i] =
-        (second_end - second) * (inverse_mm * inverse_mm * inverse_mm * (1.0 / 6.0));
+    c->slope.at[i] = (c2 - c0) * by->first;
+    c->spline.square.at[i] = second * by->second;
+    c->spline.cube.at[i] = (second_end - second) * by->third;
 }
 
 /*
@@ -45,13 +49,19 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
 void takt_curve_set_spline(struct curve *c, const struct point control[4], double length_mm)
 {
     const double inverse_mm = 1.0 / length_mm;
+    const double half = 0.5 * inverse_mm;
+    const struct factors by = {
+        .first = half,
+        .second = half * inverse_mm,
+        .third = inverse_mm * inverse_mm * inverse_mm * (1.0 / 6.0),
+    };
 
     c->kind = CURVE_SPLINE;
     c->rotary = false;
     c->length_mm = length_mm;
     c->spline.moves = 0;
     for (int i = 0; i < AXIS_COUNT; i++) {
-        set_axis(c, i, control, inverse_mm);
+        set_axis(c, i, control, &by);
     }
 }
 

@@ -44,6 +44,9 @@ static float end_feed_of(const struct ceiling_piece *p, bool highest)
 /* Feed at the beginning of a piece from which its end can be met: u = min(c^2, u_end + 2 a L). */
 static float begin_feed(const struct ceiling *c, uint32_t k, float feed_mm_s, float end_mm_s)
 {
+    if (end_mm_s >= feed_mm_s) {
+        return feed_mm_s;
+    }
     const double length_mm = c->end_mm[k] - (k == 0 ? 0.0 : c->end_mm[k - 1]);
     const double feed_squared = maths_square(ceiling_feed(c, end_mm_s)) +
                                 2.0 * (double)c->piece[k].acceleration * length_mm;
