@@ -22,7 +22,8 @@
 
 /*
  * So much of G64 P may take pieces off the curve: they are three times as long as those of the
- * exact path, and as many of them as are smoothed at a time reach as much farther.
+ * exact path, and as many of them as are smoothed at a time reach as much farther. A thousandth
+ * makes 500 random programs 0.1 % quicker: a piece's evenness decides then (geometry/nurbs.c).
  */
 #define ERROR_OF_TOLERANCE 1e-4
 

@@ -41,14 +41,28 @@ static void leave_out(struct line *l)
     line_blank(l, line_find_code(l, 'g', 100));
 }
 
+/* Of a value or a P, which stand more than once in what is written for them. */
+#define CALCULATION_MAX 64U
+
+static bool is_short(struct translator *t, const struct line_word *w)
+{
+    const bool good = (size_t)(w->end - w->value_begin) < CALCULATION_MAX;
+
+    if (!good)
+        translate_wrong(t, w,
+                        "this is too long for G10 L2, which adds in G91: work it out on a line of "
+                        "its own");
+    return good;
+}
+
 /* The offset that there is, in the units in effect, is added in G91. */
 static void add_offset(struct translator *t, const char *mode)
 {
     struct line *l = &t->line;
     const struct line_word *p = line_find(l, 'p', 0);
-    char system[64];
+    char system[CALCULATION_MAX];
 
-    if (p == NULL || (size_t)(p->end - p->value_begin) >= sizeof system)
+    if (p == NULL || !is_short(t, p))
         return;
     (void)snprintf(system, sizeof system, "%.*s", (int)(p->end - p->value_begin),
                    &l->text[p->value_begin]);
@@ -56,11 +70,11 @@ static void add_offset(struct translator *t, const char *mode)
         struct line_word *w = line_find(l, LINE_AXES[axis], 0);
         char text[256];
 
-        if (w == NULL || (size_t)(w->end - w->value_begin) > 64)
+        if (w == NULL || !is_short(t, w))
             continue;
         (void)snprintf(text, sizeof text, "%c[[%.*s]+%s*#[%u+20*[%s]]%s]", LINE_AXES[axis],
                        (int)(w->end - w->value_begin), &l->text[w->value_begin], mode, 5201U + axis,
-                       system, axis < 3 ? "/[1+24.4*#<_imperial>]" : "");
+                       system, axis < 3 ? TRANSLATE_IN_UNITS : "");
         (void)line_replace(l, w, text);
     }
 }

@@ -118,7 +118,7 @@ void registers_unshifted(char axis, char *text, size_t size)
     const unsigned index = (unsigned)(strchr(LINE_AXES, axis) - LINE_AXES);
 
     (void)snprintf(text, size, "%c[#<_%c>+#%u%s]", axis, axis, 5211U + index,
-                   index < 3 ? "/[1+24.4*#<_imperial>]" : "");
+                   index < 3 ? TRANSLATE_IN_UNITS : "");
 }
 
 /* G50 X200 Z100, with a limit or without one, says where the tool is. */

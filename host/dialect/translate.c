@@ -294,35 +294,40 @@ static void note_python(struct translator *t)
     }
 }
 
+/* What programs of Fanuc and Haas assign, turn, call and jump to. */
+static void translate_macros(struct translator *t)
+{
+    translate_assignments(t);
+    variables_set(t);
+    offsets_translate(t);
+    if (t->survey.lathe) {
+        turning_translate(t);
+        passes_translate(t);
+        lathe_translate_increments(t);
+    }
+    pocket_translate(t);
+    if (t->survey.lathe)
+        threads_translate(t);
+    calls_translate(t);
+    flow_translate(t);
+    series_translate_fine_boring(t);
+}
+
 static void translate_foreign(struct translator *t)
 {
     if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_translate(t);
     translate_start(t);
     if (translate_is(t, TRANSLATE_MARLIN))
-        printer_leave_macro(t);
-    if (!translate_is(t, TRANSLATE_MARLIN)) /* where E is the extruder, in X10E-3 too */
+        printer_leave_macro(t); /* E is the extruder, in X10E-3 too */
+    else
         translate_numbers(t);
     if (translate_is(t, TRANSLATE_MACROS))
         variables_translate(t);
     names_begin(t);
     names_translate(t);
-    if (translate_is(t, TRANSLATE_MACROS)) {
-        translate_assignments(t);
-        variables_set(t);
-        offsets_translate(t);
-        if (t->survey.lathe) {
-            turning_translate(t);
-            passes_translate(t);
-            lathe_translate_increments(t);
-        }
-        pocket_translate(t);
-        if (t->survey.lathe)
-            threads_translate(t);
-        calls_translate(t);
-        flow_translate(t);
-        series_translate_fine_boring(t);
-    }
+    if (translate_is(t, TRANSLATE_MACROS))
+        translate_macros(t);
     registers_translate_unit(t);
     codes_translate(t);
     translate_unused(t);
@@ -476,12 +481,10 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     t->result = result;
     t->source = bytes;
     t->source_length = length;
-    t->across = 'k';
     t->absolute = is_absolute(t);
     each_line(bytes, length, survey_line, t);
     registers_survey_end(&t->survey);
-    if (t->survey.lathe)
-        t->across = 'j';
+    t->across = t->survey.lathe ? 'j' : 'k';
     each_line(bytes, length, translate_line, t);
     if (translate_is(t, TRANSLATE_SIEMENS))
         siemens_finish(t);

@@ -16,6 +16,9 @@ void names_translate(struct translator *t);
 void names_survey(struct survey *s, const struct line *l);
 void names_begin(struct translator *t);
 
+/* Behind a parameter of LinuxCNC that is in mm: in the units in effect. */
+#define TRANSLATE_IN_UNITS "/[1+24.4*#<_imperial>]"
+
 /* Variables of the control (#5041) of Fanuc and Haas; those of offsets that are given a value. */
 void variables_translate(struct translator *t);
 void variables_set(struct translator *t);

@@ -17,9 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Parameters of LinuxCNC in mm, in the units in effect. */
-#define IN_UNITS "/[1+24.4*#<_imperial>]"
-
 /* A line of the interpreter is no longer. */
 #define CALCULATION_MAX 256U
 
@@ -97,7 +94,7 @@ static void offset_text(uint32_t number, char *text, size_t size)
 {
     const uint32_t axis = (number - SYSTEM_FIRST) % SYSTEM_SIZE;
 
-    (void)snprintf(text, size, axis < 3 ? "[#%u" IN_UNITS "]" : "#%u", (unsigned)number);
+    (void)snprintf(text, size, axis < 3 ? "[#%u" TRANSLATE_IN_UNITS "]" : "#%u", (unsigned)number);
 }
 
 static const char *mode_text(uint32_t number)

@@ -62,12 +62,16 @@ __attribute__((format(printf, 2, 3))) static void put(const struct convert *c, c
 /* From here on takt_decimal_write puts an exponent, which controllers do not read. */
 #define EXPONENT_MIN 1e9
 
+/* No control goes so far, or so fast; what is beyond has no room in CONVERT_NUMBER_MAX. */
+#define NUMBER_MOST 1e30
+
 /* Fixed places, as every controller reads them; at least one behind the point. */
 static void number_of(char text[CONVERT_NUMBER_MAX], double value, unsigned places)
 {
     size_t length = fabs(value) < EXPONENT_MIN
                         ? takt_decimal_write(text, value, places)
-                        : (size_t)snprintf(text, CONVERT_NUMBER_MAX, "%.1f", fmin(value, 1e30));
+                        : (size_t)snprintf(text, CONVERT_NUMBER_MAX, "%.1f",
+                                           fmax(-NUMBER_MOST, fmin(value, NUMBER_MOST)));
 
     while (length > 2 && text[length - 1] == '0' && text[length - 2] != '.')
         length--;

@@ -25,6 +25,8 @@ static void test_offsets_set_in_g91_are_added(void)
            "G91 G10 L2 P1 x[[1.]+1*#[5201+20*[1]]" SUM " a[[2.]+1*#[5204+20*[1]]]\n");
     expect(DIALECT_HAAS, "G10 L2 P#1 Y1.\n",
            "G10 L2 P#1 y[[1.]+#<_incremental>*#[5202+20*[#1]]" SUM "\n");
+    wrong("G91 G10 L2 P1 X[1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+1]\n",
+          "this is too long for G10 L2, which adds in G91: work it out on a line of its own");
     expect(DIALECT_GRBL, "G91 G10 L2 P1 X1\n", "G91 G10 L2 P1 X1\n");
 }
 
